@@ -23,6 +23,8 @@ use std::process::{Command, ExitCode};
 
 /// The tests on boards that run the firmware: they run only where they are named.
 const BOARDS: [&str; 2] = ["--test", "boards"];
+/// The same with the operator's screen, on emulated ones.
+const EMULATED: [&str; 4] = ["--test", "boards", "--test", "emulated"];
 
 /// Feature of the PC that needs the library of real cameras; its tests take the simulated one that it comes with. One set of
 /// features for everything: without it the PC's programs are linted for Windows, and tested by [`check`].
@@ -51,7 +53,7 @@ pub fn virtual_nucleo() -> ExitCode {
     });
     tally.test("tests of the virtual board", virtual_nucleo::tests);
     tally.test("tests on virtual boards", || {
-        virtual_nucleo::jobs(board_tests(&[])?, &[])
+        virtual_nucleo::jobs(board_tests(&BOARDS, &[])?, &[])
     });
     tally.close()
 }
@@ -96,7 +98,7 @@ pub fn run() -> ExitCode {
     tally.check("stack that runs over on mps2-an500", bench::stack_overflow);
     tally.test("tests on emulated boards", emulated_tests);
     tally.test("weld on virtual boards", || {
-        virtual_nucleo::jobs(board_tests(&CAMERAS)?, &ON_VIRTUAL_BOARDS)
+        virtual_nucleo::jobs(board_tests(&BOARDS, &CAMERAS)?, &ON_VIRTUAL_BOARDS)
     });
     tally.close()
 }
@@ -106,7 +108,7 @@ fn host(tally: &mut Tally, features: &[&str]) {
     tally.check("format", || cargo::run(&["fmt", "--all", "--check"]));
     tally.check("lints of the host", || {
         // Cargo leaves out what it does not run by default, and takes no name beside all targets.
-        for targets in [&["--all-targets"][..], &BOARDS] {
+        for targets in [&["--all-targets"][..], &EMULATED] {
             clippy(&[&["--workspace"], targets, features].concat())?;
         }
         Ok(())
@@ -124,7 +126,7 @@ fn clippy(selection: &[&str]) -> Result<()> {
 fn emulated_tests() -> Result<Command> {
     let logs = target_directory()?.join("emulated");
     let boot = emulate::build(logs, 1.0, DEFAULT_MACHINE.to_owned(), PlantChoice::Shipped)?;
-    let mut command = board_tests(&CAMERAS)?;
+    let mut command = board_tests(&EMULATED, &CAMERAS)?;
     let xtask = env::current_exe().context("cannot find this program's own file")?;
     command
         .args(["--skip", "on_model::"])
@@ -139,12 +141,12 @@ fn emulated_tests() -> Result<Command> {
 
 /// The tests on boards, three at a time: some run in real time and leave two cores idle now and then. Where a core is short, the
 /// boards' time waits (docs/decisions/0005). seamwright is the one that the tests of the host have built.
-fn board_tests(features: &[&str]) -> Result<Command> {
+fn board_tests(tests: &[&str], features: &[&str]) -> Result<Command> {
     let build = ["build", "--quiet", "--workspace", "--bin", "seamwright"];
     cargo::run(&[&build[..], features].concat())?;
     let seamwright = target_directory()?.join("debug").join("seamwright");
     let test = ["test", "--workspace", "--no-fail-fast"];
-    let mut command = cargo(&[&test[..], features, &BOARDS, &["--", "--test-threads=3"]].concat())?;
+    let mut command = cargo(&[&test[..], features, tests, &["--", "--test-threads=3"]].concat())?;
     command.env(PROGRAM_VARIABLES[0], seamwright);
     Ok(command)
 }

@@ -9,6 +9,7 @@
 //! - [`parameters`]: the machine file while its parameters are changed.
 //! - [`records`]: reports of past jobs, read back.
 //! - [`texts`]: everything that the screen says, in every language.
+//! - [`teaching`]: places of the tip that are being taught, for a part.
 //! - [`station`]: what is loaded, the job that runs, and what may be asked of it now.
 //! - [`screen`]: the pages. They read the station and ask it for what the operator wants.
 
@@ -19,4 +20,5 @@ pub mod records;
 pub mod running;
 pub mod screen;
 pub mod station;
+pub mod teaching;
 pub mod texts;

@@ -1,8 +1,9 @@
-//! A job of what is loaded, on a thread of its own.
+//! A job, on a thread of its own: of the program that is loaded, or by hand.
 
 use crate::loaded::Loaded;
 use anyhow::Context;
 use cam::path::Planner;
+use config::machine::MachineFile;
 use host_link::boards::Boards;
 use host_link::events::{Interest, Subscription};
 use host_link::spool::Spooling;
@@ -13,13 +14,50 @@ use report::{LogColumns, LogWriter, Report};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use world::simulated::SimulatedBoards;
 use world::{BoardChoice, BoardsError, CameraChoice, PictureChoice, Surroundings};
 
 /// Events that wait for the screen: some seconds of both boards. What comes beyond is lost for the screen, and only for it.
 const WAITING: usize = 4096;
 /// Events that wait for the disk: more than half a minute of both boards.
 const LOGGED: usize = 1 << 14;
+
+/// What a job does.
+#[derive(Clone, Debug)]
+pub enum Task {
+    /// It runs the program that is loaded.
+    Program {
+        /// The program.
+        loaded: Arc<Loaded>,
+        /// The machine waits after every block.
+        single_block: bool,
+    },
+    /// The machine homes, and is operated by hand then.
+    ByHand(Arc<Machine>),
+}
+
+/// A machine, as its file says.
+#[derive(Debug)]
+pub struct Machine {
+    /// The file.
+    pub file: PathBuf,
+    /// What it says.
+    pub is: MachineFile,
+    /// Where the tip is, by the axes.
+    pub planner: Planner,
+}
+
+impl Machine {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// A sentence with file, line and reason.
+    pub fn read(file: &Path) -> anyhow::Result<Self> {
+        let is = MachineFile::read(file)?;
+        let planner = Planner::build(&is).with_context(|| file.display().to_string())?;
+        let file = file.to_owned();
+        Ok(Self { file, is, planner })
+    }
+}
 
 /// On what jobs run, and where their reports go.
 #[derive(Clone, Debug)]
@@ -54,14 +92,19 @@ pub struct Outcome {
 }
 
 impl Running {
-    /// Begins the job of `loaded` at `place`; with `single_block` the machine waits after every block.
-    pub fn start(loaded: Arc<Loaded>, place: Place, single_block: bool) -> Self {
+    /// Begins a job at `place`.
+    pub fn start(task: Task, place: Place) -> Self {
         let (remote, control) = control();
         let events = remote.subscribe(Interest::Pictures, WAITING);
-        // A state, which needs no room.
-        let _ = remote.send(Command::SingleBlock(single_block));
         let own = remote.clone();
-        let thread = std::thread::spawn(move || run(&loaded, &place, &own, control));
+        let thread = std::thread::spawn(move || match task {
+            Task::Program { loaded, single_block } => {
+                // A state, which needs no room.
+                let _ = own.send(Command::SingleBlock(single_block));
+                run(&loaded, &place, &own, control)
+            }
+            Task::ByHand(machine) => by_hand(&machine, &place, &own, control),
+        });
         Self {
             remote,
             events,
@@ -108,6 +151,32 @@ fn run(loaded: &Loaded, place: &Place, remote: &Remote, control: Control) -> any
     outcome
 }
 
+/// Nothing is recorded, however long it lasts.
+fn by_hand(
+    machine: &Machine,
+    place: &Place,
+    remote: &Remote,
+    mut control: Control,
+) -> anyhow::Result<Outcome> {
+    let job = Job {
+        machine: &machine.is,
+        work: Work::ByHand,
+        part: None,
+        speed_m_per_min: None,
+        from_line: None,
+        surroundings: Surroundings::default().into(),
+        spooling: Spooling::nothing(),
+        names: Names::default(),
+    };
+    let mut boards = connect(&machine.is, place, remote)?;
+    let record = job::run(boards.as_mut(), &job, &mut control)?;
+    Ok(Outcome {
+        error: record.error.as_ref().map(ToString::to_string),
+        report: None,
+        folder: None,
+    })
+}
+
 /// The same with its report in `folder`.
 fn run_in(
     folder: &Path,
@@ -133,7 +202,7 @@ fn run_in(
     // Boards are asked for nothing unless the machine can do all of it.
     let planner = Planner::build(&loaded.machine)?;
     job.plan(&loaded.program, &planner, &loaded.machine.planning.park_axes())?;
-    let mut boards = connect(loaded, place, remote)?;
+    let mut boards = connect(&loaded.machine, place, remote)?;
     let log = remote.subscribe(Interest::Samples, LOGGED);
     let log = LogWriter::start(folder, LogColumns::of(&loaded.machine), log)
         .with_context(|| format!("cannot write the log in {}", folder.display()))?;
@@ -151,18 +220,17 @@ fn run_in(
     })
 }
 
-fn connect(loaded: &Loaded, place: &Place, remote: &Remote) -> Result<Box<dyn Boards + Send>, BoardsError> {
-    let kinematics = loaded.machine.motion.kinematics.name();
-    let tracked = loaded.machine.tracking.is_some();
-    match place.boards {
-        BoardChoice::Simulated => {
-            let boards = SimulatedBoards::wired_to(&place.plant.of(kinematics)?);
-            Ok(Box::new(boards.at_pace(place.pace)))
-        }
-        _ => place
-            .boards
-            .connect(kinematics, &place.plant, tracked, remote.stop_flag()),
-    }
+fn connect(
+    machine: &MachineFile,
+    place: &Place,
+    remote: &Remote,
+) -> Result<Box<dyn Boards + Send>, BoardsError> {
+    let kinematics = machine.motion.kinematics.name();
+    let tracked = machine.tracking.is_some();
+    let (pace, stop) = (Some(place.pace), remote.stop_flag());
+    place
+        .boards
+        .connect(kinematics, &place.plant, tracked, pace, stop)
 }
 
 fn names(loaded: &Loaded, place: &Place) -> Names {

@@ -3,11 +3,12 @@
 use crate::live::{Journal, Live};
 use crate::loaded::Loaded;
 use crate::parameters::Parameters;
-use crate::running::{Outcome, Place, Running};
+use crate::running::{Machine, Outcome, Place, Running, Task};
 use anyhow::bail;
 use cam::along::Along;
 use config::sentence;
-use host_link::Command;
+use host_link::events::{Phase, Question};
+use host_link::{ByHand, Command};
 use shared::state::State;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -38,6 +39,12 @@ pub enum Action {
     Back,
     /// Another feed.
     Override,
+    /// The machine homes, to be operated by hand then.
+    Home,
+    /// A block by hand, or to end that.
+    ByHand,
+    /// A jog, also while one goes on.
+    Jog,
     /// Another machine file.
     Write,
 }
@@ -60,6 +67,10 @@ pub struct Station {
     loaded: Option<Arc<Loaded>>,
     refused: Option<String>,
     running: Option<Running>,
+    /// The machine that is operated by hand.
+    by_hand: Option<Arc<Machine>>,
+    /// The program begins as soon as it is not any more.
+    starts: bool,
     last: Option<Outcome>,
 }
 
@@ -77,6 +88,8 @@ impl Station {
             loaded: None,
             refused: None,
             running: None,
+            by_hand: None,
+            starts: false,
             last: None,
         }
     }
@@ -125,18 +138,36 @@ impl Station {
         let (running, state) = (self.running.is_some() && !self.live.ended, self.live.state());
         let heard = running && self.live.silent_for(now).is_none();
         match action {
-            Action::Load | Action::Write => self.running.is_none() && self.loading.is_none(),
+            // What opens for it covers Stop.
+            Action::Load => {
+                let rests = self.running.is_none() || self.may(Action::ByHand, now);
+                rests && self.loading.is_none()
+            }
             Action::Start => self.may(Action::Load, now) && self.loaded.is_some(),
+            Action::Home | Action::Write => self.running.is_none() && self.loading.is_none(),
+            Action::ByHand => heard && self.by_hand.is_some() && self.live.question == Some(Question::ByHand),
             Action::Stop => running,
             Action::Hold => heard && state == Some(State::Running),
-            Action::Resume => heard && (state == Some(State::Holding) || self.live.question.is_some()),
+            Action::Jog => {
+                let jogs = self.live.phase == Some(Phase::Jogging) && self.by_hand.is_some();
+                self.may(Action::ByHand, now) || (heard && jogs)
+            }
+            Action::Resume => {
+                let asks = self.live.question.is_some() && !self.may(Action::ByHand, now);
+                heard && (state == Some(State::Holding) || asks)
+            }
             Action::Back => heard && state == Some(State::Holding),
             Action::Override => heard,
         }
     }
 
-    /// Begins the job of what is loaded, if it may.
+    /// Begins the job of what is loaded, if it may; what is operated by hand is given up for it.
     pub fn start(&mut self, now: Duration) {
+        if self.by_hand.is_some() && self.may(Action::Start, now) {
+            self.starts = true;
+            self.send(Command::ByHand(ByHand::Off), now);
+            return;
+        }
         let Some(loaded) = self.loaded.clone().filter(|_| self.may(Action::Start, now)) else {
             return;
         };
@@ -144,7 +175,33 @@ impl Station {
         self.begin_record(along);
         // A job begins at the programmed feed.
         (self.override_percent, self.last) = (100.0, None);
-        self.running = Some(Running::start(loaded, self.place.clone(), self.single_block));
+        let task = Task::Program {
+            loaded,
+            single_block: self.single_block,
+        };
+        self.running = Some(Running::start(task, self.place.clone()));
+    }
+
+    /// Homes the machine, to be operated by hand then, if it may.
+    pub fn home(&mut self, now: Duration) {
+        if !self.may(Action::Home, now) {
+            return;
+        }
+        match Machine::read(&self.machine_file) {
+            Ok(machine) => {
+                let (machine, along) = (Arc::new(machine), Along::default());
+                self.begin_record(along);
+                (self.override_percent, self.last) = (100.0, None);
+                self.by_hand = Some(Arc::clone(&machine));
+                self.running = Some(Running::start(Task::ByHand(machine), self.place.clone()));
+            }
+            Err(error) => self.live.journal.alarm(now, &sentence(error.as_ref())),
+        }
+    }
+
+    /// The machine that is operated by hand, while it is.
+    pub fn by_hand(&self) -> Option<&Arc<Machine>> {
+        self.by_hand.as_ref()
     }
 
     /// Writes what is changed of the machine file, if it may, has that on record, and reads the program anew for the machine. Until that
@@ -200,11 +257,18 @@ impl Station {
             while let Ok(received) = running.events().receive(Duration::ZERO) {
                 self.live.take(&received.event, now);
             }
+            let by_hand = self.by_hand.take().is_some();
+            let mut starts = std::mem::take(&mut self.starts);
             match running.outcome() {
+                // There is no verdict on what was done by hand; an error is among what happened.
+                Ok(outcome) if by_hand => starts &= outcome.error.is_none(),
                 Ok(outcome) => self.last = Some(outcome),
                 Err(error) => self.live.journal.alarm(now, &sentence(error.as_ref())),
             }
             self.live.ended = true;
+            if starts {
+                self.start(now);
+            }
         }
     }
 
@@ -214,7 +278,9 @@ impl Station {
             .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         match read {
             Ok(loaded) => {
-                self.begin_record(loaded.way.along.clone());
+                if self.running.is_none() {
+                    self.begin_record(loaded.way.along.clone());
+                }
                 (self.loaded, self.last) = (Some(Arc::new(loaded)), None);
             }
             // What was loaded before stays.

@@ -38,6 +38,8 @@ pub struct Live {
     pub deviations: Deviations,
     /// What the boards' telemetry tells, over time.
     pub signals: Signals,
+    /// What was said last to what was asked for by hand; nothing once the machine moves.
+    pub told: Option<String>,
     /// What happened.
     pub journal: Journal,
     /// Samples that the screen was too slow for.
@@ -96,14 +98,22 @@ impl Live {
                 }
             }
             Event::Phase(phase) => {
-                (self.phase, self.question) = (Some(*phase), None);
-                self.journal.phase(now, *phase);
+                (self.phase, self.question, self.told) = (Some(*phase), None, None);
+                // A hand that jogs does it a hundred times.
+                if *phase != Phase::Jogging {
+                    self.journal.phase(now, *phase);
+                }
             }
             Event::Question(question) => {
                 self.question = Some(question.clone());
-                self.journal.question(now, question);
+                if *question != Question::ByHand {
+                    self.journal.question(now, question);
+                }
             }
-            Event::Message(text) => self.journal.message(now, text),
+            Event::Message(text) => {
+                self.told = Some(text.clone());
+                self.journal.message(now, text);
+            }
             Event::MotionFault(fault) => self.journal.motion_fault(now, *fault),
             Event::TrackerFault(fault) => self.journal.tracker_fault(now, *fault),
             Event::End { error, .. } => {

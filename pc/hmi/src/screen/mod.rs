@@ -2,10 +2,13 @@
 
 mod alarms;
 mod bar;
+mod jog;
 mod parameters;
 mod plot;
 mod run;
+mod set_up;
 mod settings;
+mod teach;
 mod theme;
 mod welds;
 
@@ -33,6 +36,10 @@ pub enum Page {
     /// The job.
     #[default]
     Run,
+    /// Setting up the machine.
+    SetUp,
+    /// Teaching places of the tip.
+    Teach,
     /// Signals of the boards over time.
     Plot,
     /// What went wrong, and what happened.
@@ -47,8 +54,10 @@ pub enum Page {
 
 impl Page {
     /// All pages, in the order of their keys.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::Run,
+        Self::SetUp,
+        Self::Teach,
         Self::Plot,
         Self::Alarms,
         Self::Welds,
@@ -60,6 +69,8 @@ impl Page {
     pub fn name(self) -> Text {
         match self {
             Self::Run => Text::Run,
+            Self::SetUp => Text::SetUp,
+            Self::Teach => Text::Teach,
             Self::Plot => Text::LivePlot,
             Self::Alarms => Text::Alarms,
             Self::Welds => Text::Welds,
@@ -77,6 +88,10 @@ pub struct Screen {
     pub look: Look,
     page: Page,
     run: run::RunPage,
+    /// What is jogged at, on the pages for that.
+    panel: jog::Panel,
+    set_up: set_up::SetUpPage,
+    teach: teach::TeachPage,
     plot: plot::PlotPage,
     welds: welds::WeldsPage,
     parameters: parameters::ParametersPage,
@@ -98,6 +113,9 @@ impl Screen {
             look,
             page: Page::default(),
             run: run::RunPage::default(),
+            panel: jog::Panel::default(),
+            set_up: set_up::SetUpPage::default(),
+            teach: teach::TeachPage::default(),
             plot: plot::PlotPage::default(),
             welds: welds::WeldsPage::default(),
             parameters: parameters::ParametersPage::default(),
@@ -108,6 +126,8 @@ impl Screen {
     /// Takes what has happened, and asks to be drawn again in time.
     fn turn(&mut self, ctx: &egui::Context) {
         self.station.turn(self.now());
+        let now = self.now();
+        self.panel.turn(&mut self.station, now);
         self.plot.turn(&self.station.live.signals);
         let live = self.station.is_running() || self.station.is_loading();
         ctx.request_repaint_after(if live { FRAME } else { IDLE });
@@ -137,6 +157,8 @@ impl Screen {
             .frame(egui::Frame::new().inner_margin(8))
             .show(ui, |ui| match self.page {
                 Page::Run => self.run.show(ui, &view, &mut self.station, self.look.left_handed),
+                Page::SetUp => self.set_up.show(ui, &view, &mut self.station, &mut self.panel),
+                Page::Teach => self.teach.show(ui, &view, &mut self.station, &mut self.panel),
                 Page::Plot => {
                     self.plot
                         .show(ui, &view, &self.station.live.signals, &self.station.place.reports);
@@ -154,6 +176,8 @@ impl Screen {
     /// Brings `page` in sight.
     pub fn open(&mut self, page: Page) {
         self.page = page;
+        // Nothing is moved from a page that is not in sight.
+        self.panel.disarm();
         match page {
             Page::Welds => self.welds.open(&self.station.place.reports),
             Page::Parameters => self.parameters.open(&self.station),

@@ -196,6 +196,54 @@ texts! {
     Duration: "Duration", "用时", "Dauer";
     TrueDeviation: "Spot beside its seam, in truth (only a simulated machine can know it) [µm]", "光斑相对焊缝的真实偏差（仅仿真机可知）[µm]", "Spot neben der Naht, in Wahrheit (nur eine simulierte Maschine weiß sie) [µm]";
     Outside: "OUTSIDE", "超限", "ÜBER";
+    // Setting up
+    SetUp: "Set up", "调整", "Einrichten";
+    Home: "Home…", "回零…", "Referenz…";
+    HomeNow: "Home now", "立即回零", "Jetzt referenzieren";
+    HomeTitle: "Switch the drives on and home?", "接通驱动并回零？", "Antriebe einschalten und referenzieren?";
+    HomeWarning: "The drives go on, and every axis searches its reference mark, in the sequence of the machine file. Keep clear of the machine.", "驱动将接通，各轴按机器文件中的顺序寻找参考点。请远离机器。", "Die Antriebe gehen an, und jede Achse sucht ihre Referenzmarke in der Reihenfolge der Maschinendatei. Abstand von der Maschine halten.";
+    DrivesOff: "Drives off", "断开驱动", "Antriebe aus";
+    ProgramRuns: "A program runs: nothing can be set up meanwhile.", "程序正在运行：此时不能调整。", "Ein Programm läuft: solange kann nichts eingerichtet werden.";
+    Positions: "Positions", "位置", "Positionen";
+    TipOfTool: "Tip in the work", "工具尖点（工件坐标）", "Spitze im Werkstück";
+    NotHomed: "The drives are off: home first.", "驱动已断开：请先回零。", "Die Antriebe sind aus: zuerst referenzieren.";
+    References: "Reference marks", "参考点", "Referenzmarken";
+    DrivesComeOn: "The drives are coming on.", "驱动正在接通。", "Die Antriebe gehen an.";
+    SearchesNow: "{} search now.", "{} 正在寻找。", "{} suchen jetzt.";
+    WaitsForOthers: "{} search now; {} wait for their turn.", "{} 正在寻找；{} 等待其顺序。", "{} suchen jetzt; {} warten, bis sie an der Reihe sind.";
+    ArmPanel: "Arm the panel", "启用点动面板", "Bedienfeld scharf schalten";
+    Armed: "ARMED: the machine moves by these buttons. Tap to disarm.", "已启用：按钮会使机器运动。点按可停用。", "SCHARF: diese Tasten bewegen die Maschine. Antippen schaltet ab.";
+    FrameAxes: "Axes", "轴", "Achsen";
+    FrameWork: "Work", "工件", "Werkstück";
+    FrameTool: "Tool", "工具", "Werkzeug";
+    FrameSlides: "Slides", "滑台", "Schlitten";
+    Step: "Step", "步长", "Schritt";
+    Continuous: "While held", "按住时", "Gehalten";
+    JogSpeed: "Speed", "速度", "Tempo";
+    JogKeys: "Keys, while armed: arrows for the first two directions, Page up and Page down for the third", "启用后按键：方向键控制前两个方向，Page Up / Page Down 控制第三个方向", "Tasten, wenn scharf: Pfeile für die ersten beiden Richtungen, Bild auf und Bild ab für die dritte";
+    BlockByHand: "Block by hand (MDI), checked as a program is; the panel must be armed", "手动程序段（MDI），按程序同样检查；须先启用面板", "Satz von Hand (MDI), geprüft wie ein Programm; das Bedienfeld muss scharf sein";
+    CarryOut: "Carry out", "执行", "Ausführen";
+    // Teaching
+    Teach: "Teach", "示教", "Lernen";
+    ChoosePart: "Part…", "工件…", "Teil…";
+    ChoosePartIn: "Choose a part in {}", "在 {} 中选择工件", "Teil in {} wählen";
+    NoParts: "There is no part of taught places there ([seam]).", "那里没有按示教点定义的工件（[seam]）。", "Dort ist kein Teil aus gelernten Punkten ([seam]).";
+    NoPart: "Choose a part whose seam goes through taught places. What is taught goes to its file at once.", "请选择由示教点定义焊缝的工件。示教结果会立即写入其文件。", "Ein Teil wählen, dessen Naht durch gelernte Punkte geht. Was gelernt ist, steht sofort in seiner Datei.";
+    HomeFirst: "Home on the page Set up first.", "请先在“调整”页面回零。", "Zuerst auf der Seite Einrichten referenzieren.";
+    Take: "Take", "记录", "Übernehmen";
+    Undo: "Undo", "撤销", "Zurücknehmen";
+    PlanProgram: "Plan program", "规划程序", "Programm planen";
+    Restart: "Begin anew…", "重新开始…", "Neu beginnen…";
+    RestartTitle: "Take out all places?", "删除所有点？", "Alle Punkte herausnehmen?";
+    RestartKeeps: "They are kept as a version of the file.", "它们会作为文件的一个版本保留。", "Sie bleiben als Version der Datei erhalten.";
+    RestartNow: "Take out", "删除", "Herausnehmen";
+    Taken: "Place {} is taken.", "已记录第 {} 点。", "Punkt {} ist übernommen.";
+    TakenAlready: "This place is taken already.", "该点已记录。", "Dieser Punkt ist schon übernommen.";
+    Undone: "Taken out.", "已删除。", "Herausgenommen.";
+    Planned: "{} is planned, and is being loaded.", "{} 已规划，正在加载。", "{} ist geplant und wird geladen.";
+    PlacesIn: "Places in {}: X Y Z mm, A B C °", "{} 中的点：X Y Z mm，A B C °", "Punkte in {}: X Y Z mm, A B C °";
+    Jogging: "jogging", "点动", "Handfahrt";
+    ByHandAsked: "Ready to jog, or for a block", "可点动或执行程序段", "Bereit für Handfahrt oder Satz";
     // Parameters
     Search: "Search", "搜索", "Suchen";
     AllParameters: "All", "全部", "Alle";
@@ -283,6 +331,7 @@ impl Words {
             Phase::MovingOn => Text::MovingOn,
             Phase::Dwelling => Text::Dwelling,
             Phase::Parking => Text::Parking,
+            Phase::Jogging => Text::Jogging,
             Phase::Stopping => Text::Stopping,
             Phase::WaitingForInput { number, line } => {
                 return self.with(Text::WaitingForInput, &[&number.to_string(), &line.to_string()]);
@@ -327,6 +376,7 @@ impl Words {
                 self.with(Text::ToolIn, &[&line.to_string(), &tool.to_string(), &said(text)])
             }
             Question::FeedTooLow => self.say(Text::FeedTooLow).to_owned(),
+            Question::ByHand => self.say(Text::ByHandAsked).to_owned(),
             Question::Jog => self.say(Text::JogAsked).to_owned(),
         }
     }

@@ -39,8 +39,17 @@ impl Bench {
     }
 
     pub fn of(machine: &str) -> Self {
+        Self::at_pace(machine, PACE)
+    }
+
+    /// Where somebody holds to a button.
+    pub fn in_real_time(machine: &str) -> Self {
+        Self::at_pace(machine, 1.0)
+    }
+
+    fn at_pace(machine: &str, pace: f64) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
-        Self::with(format!("../../machines/{machine}.toml").into(), folder)
+        Self::with(format!("../../machines/{machine}.toml").into(), folder, pace)
     }
 
     /// Of the dual-beam gantry, with a machine file of its own, which is given back.
@@ -50,14 +59,14 @@ impl Bench {
         std::fs::create_dir(&machines).expect("a folder");
         let file = machines.join("dual-beam-gantry.toml");
         std::fs::copy("../../machines/dual-beam-gantry.toml", &file).expect("copied");
-        (Self::with(file.clone(), folder), file)
+        (Self::with(file.clone(), folder, PACE), file)
     }
 
-    fn with(machine: PathBuf, folder: tempfile::TempDir) -> Self {
+    fn with(machine: PathBuf, folder: tempfile::TempDir, pace: f64) -> Self {
         let place = Place {
             boards: BoardChoice::Simulated,
             plant: PlantChoice::Shipped,
-            pace: PACE,
+            pace,
             reports: folder.path().to_owned(),
         };
         let station = Station::new(machine, "../../programs".into(), place);

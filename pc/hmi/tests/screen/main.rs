@@ -4,5 +4,7 @@ mod bench;
 mod day;
 mod parameters;
 mod pictures;
+mod set_up;
+mod teach;
 #[cfg(target_os = "linux")]
 mod window;

@@ -1,0 +1,115 @@
+//! The page for setting up: drives and homing, positions, jogging, blocks by hand.
+
+mod block;
+mod homing;
+mod positions;
+
+use super::{View, bare, jog, title};
+use crate::station::{Action, Station};
+use crate::texts::Text;
+use eframe::egui::{self, Button, Color32, Id, Label, Modal, RichText, Ui};
+use host_link::{ByHand, Command};
+
+/// Width of drives and positions \[points\].
+const LEFT: f32 = 428.0;
+/// Height of what a block is typed into \[points\].
+const BLOCK: f32 = 210.0;
+/// Size of a large button \[points\].
+const LARGE: [f32; 2] = [196.0, 60.0];
+
+/// What the page remembers between two frames.
+#[derive(Default)]
+pub(in crate::screen) struct SetUpPage {
+    block: block::Entry,
+    /// The question before homing is open.
+    asks: bool,
+}
+
+impl SetUpPage {
+    pub fn show(&mut self, ui: &mut Ui, view: &View, station: &mut Station, panel: &mut jog::Panel) {
+        bare(egui::Panel::left("drives"))
+            .exact_size(LEFT)
+            .resizable(false)
+            .show(ui, |ui| {
+                self.drives(ui, view, station);
+                ui.add_space(6.0);
+                positions::show(ui, view, station);
+                ui.add_space(6.0);
+                homing::show(ui, view, station);
+            });
+        bare(egui::Panel::bottom("block"))
+            .exact_size(BLOCK)
+            .resizable(false)
+            .show(ui, |ui| {
+                self.block.show(ui, view, station, panel.is_armed());
+            });
+        egui::Frame::new()
+            .inner_margin(8)
+            .show(ui, |ui| panel.show(ui, view, station));
+        if self.asks {
+            self.ask(ui, view, station);
+        }
+    }
+
+    fn drives(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
+        ui.horizontal(|ui| {
+            let label = RichText::new(view.words.say(Text::Home)).size(20.0);
+            let home = Button::new(label).min_size(LARGE.into());
+            if ui
+                .add_enabled(station.may(Action::Home, view.now), home)
+                .clicked()
+            {
+                self.asks = true;
+            }
+            let label = RichText::new(view.words.say(Text::DrivesOff)).size(20.0);
+            let off = Button::new(label).min_size(LARGE.into());
+            if ui
+                .add_enabled(station.may(Action::ByHand, view.now), off)
+                .clicked()
+            {
+                station.send(Command::ByHand(ByHand::Off), view.now);
+            }
+        });
+        if station.is_running() && station.by_hand().is_none() {
+            ui.add(Label::new(view.words.say(Text::ProgramRuns)).wrap());
+        }
+    }
+
+    /// The question before homing: nothing moves by one touch.
+    fn ask(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
+        let words = view.words;
+        if !station.may(Action::Home, view.now) {
+            self.asks = false;
+            return;
+        }
+        let modal = Modal::new(Id::unique("home")).show(ui.ctx(), |ui| {
+            ui.set_width(560.0);
+            ui.heading(words.say(Text::HomeTitle));
+            ui.add_space(8.0);
+            ui.label(station.place.boards.name());
+            ui.add(Label::new(RichText::new(words.say(Text::HomeWarning)).color(view.theme.doubt)).wrap());
+            ui.add_space(12.0);
+            ui.horizontal(|ui| {
+                let text = RichText::new(words.say(Text::HomeNow))
+                    .size(20.0)
+                    .color(Color32::BLACK);
+                let button = Button::new(text)
+                    .fill(view.theme.good)
+                    .min_size([200.0, 60.0].into());
+                if ui.add(button).clicked() {
+                    station.home(view.now);
+                    self.asks = false;
+                }
+                if ui
+                    .add(Button::new(words.say(Text::Cancel)).min_size([200.0, 60.0].into()))
+                    .clicked()
+                {
+                    self.asks = false;
+                }
+            });
+        });
+        if modal.should_close() {
+            self.asks = false;
+        }
+    }
+}
