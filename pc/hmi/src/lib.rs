@@ -10,15 +10,21 @@
 //! - [`records`]: reports of past jobs, read back.
 //! - [`texts`]: everything that the screen says, in every language.
 //! - [`teaching`]: places of the tip that are being taught, for a part.
+//! - [`access`]: who may do what.
+//! - [`record`]: what happened, in a file that outlives the screen.
+//! - [`settings`]: how the screen looks, and its PINs, in a file.
 //! - [`station`]: what is loaded, the job that runs, and what may be asked of it now.
 //! - [`screen`]: the pages. They read the station and ask it for what the operator wants.
 
+pub mod access;
 pub mod live;
 pub mod loaded;
 pub mod parameters;
+pub mod record;
 pub mod records;
 pub mod running;
 pub mod screen;
+pub mod settings;
 pub mod station;
 pub mod teaching;
 pub mod texts;

@@ -4,7 +4,8 @@ use anyhow::anyhow;
 use clap::Parser;
 use eframe::egui;
 use hmi::running::Place;
-use hmi::screen::{Look, Screen};
+use hmi::screen::Screen;
+use hmi::settings::Settings;
 use hmi::station::Station;
 use hmi::texts::Language;
 use plant_file::PlantChoice;
@@ -37,9 +38,13 @@ struct Arguments {
     /// Folder of the reports; each job makes one of its own in it
     #[arg(long, value_name = "DIR", default_value = "reports")]
     reports: PathBuf,
-    /// Language: en, zh-Hans or de
-    #[arg(long, default_value = "en", value_parser = language)]
-    language: Language,
+    /// File of the screen's own settings: language, size, PINs
+    /// [default: seamwright/hmi.toml in $XDG_CONFIG_HOME or ~/.config]
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+    /// Language: en, zh-Hans or de [default: that of the settings, or en]
+    #[arg(long, value_parser = language)]
+    language: Option<Language>,
     /// The whole screen, without a frame
     #[arg(long)]
     fullscreen: bool,
@@ -85,10 +90,11 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     if let Some(program) = arguments.program {
         station.load(program, None);
     }
-    let look = Look {
-        language: arguments.language,
-        ..Look::default()
-    };
+    let file = arguments.settings.or_else(Settings::usual_file);
+    let mut settings = file.map(Settings::read).unwrap_or_default();
+    if let Some(language) = arguments.language {
+        settings.look.language = language;
+    }
     let viewport = egui::ViewportBuilder::default()
         .with_title("Seamwright")
         .with_inner_size([1280.0, 800.0])
@@ -101,7 +107,7 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
         ..Default::default()
     };
     let window = move |_: &eframe::CreationContext| -> Result<Box<dyn eframe::App>, _> {
-        Ok(Box::new(Screen::new(station, look)))
+        Ok(Box::new(Screen::new(station, settings)))
     };
     eframe::run_native("seamwright", options, Box::new(window))
         .map_err(|error| anyhow!("cannot open a window ({error}); is there a display?"))

@@ -1,8 +1,12 @@
 //! The station: what is loaded, the job that runs, and what may be asked of it now.
 
+mod guarded;
+
+use crate::access::Access;
 use crate::live::{Journal, Live};
 use crate::loaded::Loaded;
 use crate::parameters::Parameters;
+use crate::record::{Earlier, Record, earlier};
 use crate::running::{Machine, Outcome, Place, Running, Task};
 use anyhow::bail;
 use cam::along::Along;
@@ -45,6 +49,10 @@ pub enum Action {
     ByHand,
     /// A jog, also while one goes on.
     Jog,
+    /// The drives off, where the machine is operated by hand.
+    Off,
+    /// Another place of a part that is being taught.
+    Teach,
     /// Another machine file.
     Write,
 }
@@ -72,11 +80,15 @@ pub struct Station {
     /// The program begins as soon as it is not any more.
     starts: bool,
     last: Option<Outcome>,
+    access: Access,
+    record: Record,
+    earlier: Vec<Earlier>,
 }
 
 impl Station {
-    /// A station for the machine in `machine_file`, with nothing loaded.
+    /// A station for the machine in `machine_file`, with nothing loaded, and no PINs. Its record is in the folder of the reports.
     pub fn new(machine_file: PathBuf, programs: PathBuf, place: Place) -> Self {
+        let (record, earlier) = (Record::new(place.reports.clone()), earlier(&place.reports));
         Self {
             machine_file,
             place,
@@ -91,6 +103,9 @@ impl Station {
             by_hand: None,
             starts: false,
             last: None,
+            access: Access::default(),
+            record,
+            earlier,
         }
     }
 
@@ -133,27 +148,35 @@ impl Station {
         }));
     }
 
-    /// Whether `action` makes sense at `now` by the screen's clock. Without word from the boards nothing can be asked but a stop.
+    /// Whether `action` is allowed, and makes sense at `now` by the screen's clock.
     pub fn may(&self, action: Action, now: Duration) -> bool {
+        self.allows(action) && self.makes_sense(action, now)
+    }
+
+    /// Without word from the boards nothing can be asked but a stop.
+    fn makes_sense(&self, action: Action, now: Duration) -> bool {
         let (running, state) = (self.running.is_some() && !self.live.ended, self.live.state());
         let heard = running && self.live.silent_for(now).is_none();
         match action {
             // What opens for it covers Stop.
             Action::Load => {
-                let rests = self.running.is_none() || self.may(Action::ByHand, now);
+                let rests = self.running.is_none() || self.makes_sense(Action::ByHand, now);
                 rests && self.loading.is_none()
             }
-            Action::Start => self.may(Action::Load, now) && self.loaded.is_some(),
+            Action::Start => self.makes_sense(Action::Load, now) && self.loaded.is_some(),
             Action::Home | Action::Write => self.running.is_none() && self.loading.is_none(),
-            Action::ByHand => heard && self.by_hand.is_some() && self.live.question == Some(Question::ByHand),
+            Action::Teach => true,
+            Action::ByHand | Action::Off => {
+                heard && self.by_hand.is_some() && self.live.question == Some(Question::ByHand)
+            }
             Action::Stop => running,
             Action::Hold => heard && state == Some(State::Running),
             Action::Jog => {
                 let jogs = self.live.phase == Some(Phase::Jogging) && self.by_hand.is_some();
-                self.may(Action::ByHand, now) || (heard && jogs)
+                self.makes_sense(Action::ByHand, now) || (heard && jogs)
             }
             Action::Resume => {
-                let asks = self.live.question.is_some() && !self.may(Action::ByHand, now);
+                let asks = self.live.question.is_some() && !self.makes_sense(Action::ByHand, now);
                 heard && (state == Some(State::Holding) || asks)
             }
             Action::Back => heard && state == Some(State::Holding),
@@ -210,6 +233,7 @@ impl Station {
     /// # Errors
     /// A sentence: why it is not written.
     pub fn write(&mut self, parameters: &mut Parameters, now: Duration) -> anyhow::Result<()> {
+        self.check(Action::Write)?;
         if !self.may(Action::Write, now) {
             bail!("a machine file is only written where no job runs");
         }
@@ -223,8 +247,11 @@ impl Station {
         Ok(())
     }
 
-    /// Sends `command` to the job that runs; one that is not taken is told.
+    /// Sends `command` to the job that runs, if the level is enough for it; one that is not taken is told.
     pub fn send(&mut self, command: Command, now: Duration) {
+        if !self.access.allows(guarded::level_of(&command)) {
+            return;
+        }
         if let Some(running) = &self.running
             && let Err(error) = running.send(command)
         {
@@ -270,6 +297,7 @@ impl Station {
                 self.start(now);
             }
         }
+        self.guard(now);
     }
 
     fn take_loaded(&mut self, loading: JoinHandle<anyhow::Result<Loaded>>) {
@@ -303,5 +331,6 @@ impl Drop for Station {
             let _ = running.send(Command::Stop);
             let _ = running.outcome();
         }
+        guarded::close(self);
     }
 }

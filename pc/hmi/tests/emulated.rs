@@ -6,7 +6,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use emulator::{Boards, Options, SESSION_VARIABLE, bound_to_parent};
 use hmi::running::Place;
-use hmi::screen::{Look, Page, Screen};
+use hmi::screen::{Page, Screen};
+use hmi::settings::Settings;
 use hmi::station::Station;
 use host_link::events::Question;
 use plant_file::{DEFAULT_MACHINE, PlantChoice};
@@ -122,7 +123,7 @@ fn the_day() {
         "../../programs".into(),
         place,
     );
-    let screen = Screen::new(station, Look::default());
+    let screen = Screen::new(station, Settings::default());
     let harness = Harness::builder()
         .with_size([1280.0, 800.0])
         .build_eframe(|_| screen);

@@ -1,5 +1,6 @@
 //! What happened, for the operator: newest last, the oldest forgotten beyond a bound.
 
+use crate::access::Event;
 use config::parameters::Change;
 use host_link::events::{Phase, Question};
 use job::JobError;
@@ -56,6 +57,14 @@ pub enum What {
     FileWritten(String, String),
     /// With another value of a parameter.
     Parameter(Change),
+    /// Another access level or PIN, or none.
+    Access(Event),
+    /// The record cannot be written, and why.
+    RecordUnwritten(String),
+    /// The settings of the screen cannot be read, and why.
+    SettingsUnread(String),
+    /// The settings of the screen cannot be written, and why.
+    SettingsUnwritten(String),
     /// In words of the job or of the program, in English.
     Said(String),
 }
@@ -74,19 +83,51 @@ impl What {
 
 /// All that happened.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Journal(VecDeque<Entry>);
+pub struct Journal {
+    entries: VecDeque<Entry>,
+    /// Those that nobody has put on record yet.
+    unrecorded: VecDeque<Entry>,
+}
 
 impl Journal {
     fn add(&mut self, at: Duration, severity: Severity, what: What) {
-        if self.0.len() == KEPT {
-            self.0.pop_front();
-        }
-        self.0.push_back(Entry {
+        let entry = Entry {
             at,
             severity,
             what,
             acknowledged: severity < Severity::Alarm,
-        });
+        };
+        for kept in [&mut self.entries, &mut self.unrecorded] {
+            if kept.len() == KEPT {
+                kept.pop_front();
+            }
+            kept.push_back(entry.clone());
+        }
+    }
+
+    /// What is to be put on record, oldest first; once.
+    pub(crate) fn take_unrecorded(&mut self) -> VecDeque<Entry> {
+        std::mem::take(&mut self.unrecorded)
+    }
+
+    /// Another access level or PIN, or none.
+    pub(crate) fn access(&mut self, at: Duration, event: Event) {
+        self.add(at, Severity::Note, What::Access(event));
+    }
+
+    /// The record cannot be written.
+    pub(crate) fn record_unwritten(&mut self, at: Duration, error: &str) {
+        self.add(at, Severity::Note, What::RecordUnwritten(error.to_owned()));
+    }
+
+    /// The settings of the screen cannot be read.
+    pub(crate) fn settings_unread(&mut self, at: Duration, error: &str) {
+        self.add(at, Severity::Alarm, What::SettingsUnread(error.to_owned()));
+    }
+
+    /// The settings of the screen cannot be written.
+    pub(crate) fn settings_unwritten(&mut self, at: Duration, error: &str) {
+        self.add(at, Severity::Alarm, What::SettingsUnwritten(error.to_owned()));
     }
 
     pub(super) fn connected(&mut self, at: Duration, motion: Option<&Identity>, tracker: Option<&Identity>) {
@@ -145,7 +186,7 @@ impl Journal {
 
     /// All entries, oldest first.
     pub fn entries(&self) -> impl DoubleEndedIterator<Item = &Entry> {
-        self.0.iter()
+        self.entries.iter()
     }
 
     /// Alarms that nobody has taken note of yet, oldest first.
@@ -155,6 +196,8 @@ impl Journal {
 
     /// The operator has taken note of all alarms.
     pub fn acknowledge(&mut self) {
-        self.0.iter_mut().for_each(|entry| entry.acknowledged = true);
+        self.entries
+            .iter_mut()
+            .for_each(|entry| entry.acknowledged = true);
     }
 }

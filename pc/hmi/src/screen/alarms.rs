@@ -1,12 +1,14 @@
 //! The page of alarms: what is wrong, and all that happened.
 
-use super::View;
-use crate::live::{Entry, Journal, Severity, What};
+use super::{View, title};
+use crate::live::{Entry, Severity, What};
+use crate::station::Station;
 use crate::texts::{Text, Words};
-use eframe::egui::{Button, Frame, Label, RichText, ScrollArea, Ui};
+use eframe::egui::{Button, Color32, Frame, Label, RichText, ScrollArea, Ui};
 
-pub(super) fn show(ui: &mut Ui, view: &View, journal: &mut Journal) {
+pub(super) fn show(ui: &mut Ui, view: &View, station: &mut Station) {
     let words = view.words;
+    let journal = &mut station.live.journal;
     ui.heading(words.say(Text::Alarms));
     let open: Vec<&Entry> = journal.open_alarms().collect();
     let any = !open.is_empty();
@@ -33,12 +35,7 @@ pub(super) fn show(ui: &mut Ui, view: &View, journal: &mut Journal) {
     ui.add_space(16.0);
     ui.heading(words.say(Text::History));
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        for entry in journal.entries().rev() {
-            let colour = match entry.severity {
-                Severity::Note => ui.visuals().text_color(),
-                Severity::Waits => view.theme.doubt,
-                Severity::Alarm => view.theme.bad,
-            };
+        for entry in station.live.journal.entries().rev() {
             let seconds = entry.at.as_secs();
             let time = format!(
                 "{:02}:{:02}:{:02}",
@@ -46,26 +43,38 @@ pub(super) fn show(ui: &mut Ui, view: &View, journal: &mut Journal) {
                 seconds / 60 % 60,
                 seconds % 60
             );
-            ui.horizontal_top(|ui| {
-                ui.label(RichText::new(time).monospace().color(view.theme.faint));
-                ui.add(Label::new(RichText::new(said(words, &entry.what)).color(colour)).wrap());
-            });
+            let colour = colour(ui, view, entry.severity);
+            line(ui, view, &time, &said(words, &entry.what), colour);
+        }
+        if !station.earlier().is_empty() {
+            ui.add_space(8.0);
+            title(ui, view, words.say(Text::EarlierHistory));
+        }
+        for entry in station.earlier().iter().rev() {
+            let colour = colour(ui, view, entry.severity);
+            // Without the offset of the zone; the file has it.
+            let time = entry.time.get(..19).unwrap_or(&entry.time).replace('T', " ");
+            line(ui, view, &time, &entry.text, colour);
         }
     });
 }
 
+fn line(ui: &mut Ui, view: &View, time: &str, text: &str, colour: Color32) {
+    ui.horizontal_top(|ui| {
+        ui.label(RichText::new(time).monospace().color(view.theme.faint));
+        ui.add(Label::new(RichText::new(text).color(colour)).wrap());
+    });
+}
+
+fn colour(ui: &Ui, view: &View, severity: Severity) -> Color32 {
+    match severity {
+        Severity::Note => ui.visuals().text_color(),
+        Severity::Waits => view.theme.doubt,
+        Severity::Alarm => view.theme.bad,
+    }
+}
+
 /// What happened, in words.
 pub(super) fn said(words: Words, what: &What) -> String {
-    match what {
-        What::Phase(phase) => words.phase(*phase),
-        What::Question(question) => words.question(question),
-        What::Connected(firmware) => words.with(Text::Connected, &[&firmware.join(", ")]),
-        What::Finished => words.say(Text::JobFinished).to_owned(),
-        What::MotionFault(fault) => words.fault(fault),
-        What::TrackerFault(fault) => words.tracker_fault(fault),
-        What::Stopped => words.say(Text::StoppedByOperator).to_owned(),
-        What::FileWritten(file, version) => words.with(Text::FileWritten, &[file, version]),
-        What::Parameter(change) => words.change(change),
-        What::Said(text) => text.clone(),
-    }
+    words.happened(what)
 }

@@ -1,6 +1,6 @@
 //! The panel to jog at: armed first, then a button held, or tapped for a step.
 
-use super::{View, title};
+use super::{View, access, title};
 use crate::station::{Action, Station};
 use crate::texts::Text;
 use eframe::egui::{Button, Color32, Context, Key, RichText, Sense, Ui};
@@ -93,7 +93,8 @@ impl Panel {
     /// It is not armed for ever, nor where nothing can be moved.
     pub fn turn(&mut self, station: &mut Station, now: Duration) {
         let unused = self.armed.is_some_and(|used| now > used + UNUSED);
-        if unused || !station.may(Action::Jog, now) && !station.may(Action::Hold, now) {
+        let allowed = station.allows(Action::Jog);
+        if unused || !allowed || !station.may(Action::Jog, now) && !station.may(Action::Hold, now) {
             self.armed = None;
         }
         if self.armed.is_none() {
@@ -151,6 +152,10 @@ impl Panel {
     }
 
     fn arm(&mut self, ui: &mut Ui, view: &View, station: &Station) {
+        if !station.allows(Action::Jog) {
+            access::needed(ui, view, station, Action::Jog);
+            return;
+        }
         let may = station.may(Action::Jog, view.now);
         let (text, fill) = match self.armed {
             Some(_) => (Text::Armed, view.theme.doubt),

@@ -1,8 +1,10 @@
 //! The pages, and what is always in sight around them.
 
+mod access;
 mod alarms;
 mod bar;
 mod jog;
+mod levels;
 mod parameters;
 mod plot;
 mod run;
@@ -12,12 +14,15 @@ mod teach;
 mod theme;
 mod welds;
 
-pub use settings::Look;
+pub use crate::settings::Look;
 
+use crate::access::Pins;
+use crate::settings::Settings;
 use crate::station::{Action, Station};
 use crate::texts::{Text, Words};
 use eframe::egui::{self, Key, Modifiers, Response, RichText, TextWrapMode, Ui, Visuals};
 use host_link::Command;
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 use theme::Theme;
 
@@ -95,7 +100,14 @@ pub struct Screen {
     plot: plot::PlotPage,
     welds: welds::WeldsPage,
     parameters: parameters::ParametersPage,
-    began: Instant,
+    /// Why a PIN was not taken away.
+    refused: levels::Refused,
+    /// A PIN is being typed, in the place of the page.
+    pad: Option<access::Pad>,
+    settings: Settings,
+    /// What is in the settings, or could not be written there.
+    kept: (Look, Option<Pins>),
+    clock: Box<dyn Fn() -> Duration>,
 }
 
 /// What every page is given.
@@ -103,11 +115,29 @@ struct View<'a> {
     words: Words,
     theme: &'a Theme,
     now: Duration,
+    /// A PIN is asked for.
+    asks: Cell<Option<access::Purpose>>,
 }
 
 impl Screen {
-    /// A screen of `station`.
-    pub fn new(station: Station, look: Look) -> Self {
+    /// A screen of `station`, with what is kept in `settings`.
+    pub fn new(station: Station, settings: Settings) -> Self {
+        let began = Instant::now();
+        Self::by_clock(station, settings, move || began.elapsed())
+    }
+
+    /// The same, for which it is as late as `clock` says.
+    pub fn by_clock(
+        mut station: Station,
+        mut settings: Settings,
+        clock: impl Fn() -> Duration + 'static,
+    ) -> Self {
+        let look = settings.look.clone();
+        let kept = (look.clone(), settings.access.pins().cloned());
+        station.set_access(std::mem::take(&mut settings.access));
+        if let Some(error) = &settings.unread {
+            station.live.journal.settings_unread(clock(), error);
+        }
         Self {
             station,
             look,
@@ -119,7 +149,11 @@ impl Screen {
             plot: plot::PlotPage::default(),
             welds: welds::WeldsPage::default(),
             parameters: parameters::ParametersPage::default(),
-            began: Instant::now(),
+            refused: None,
+            pad: None,
+            settings,
+            kept,
+            clock: Box::new(clock),
         }
     }
 
@@ -142,7 +176,11 @@ impl Screen {
             words: Words(self.look.language),
             theme: &theme,
             now: self.now(),
+            asks: Cell::new(None),
         };
+        if ui.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) {
+            self.station.touch(view.now);
+        }
         self.keys(ui, view.now);
         bare(egui::Panel::top("bar")).exact_size(BAR).show(ui, |ui| {
             bar::show(ui, &view, &mut self.station, self.look.left_handed);
@@ -156,6 +194,7 @@ impl Screen {
         egui::CentralPanel::default()
             .frame(egui::Frame::new().inner_margin(8))
             .show(ui, |ui| match self.page {
+                _ if self.pad.is_some() => self.type_pin(ui, &view),
                 Page::Run => self.run.show(ui, &view, &mut self.station, self.look.left_handed),
                 Page::SetUp => self.set_up.show(ui, &view, &mut self.station, &mut self.panel),
                 Page::Teach => self.teach.show(ui, &view, &mut self.station, &mut self.panel),
@@ -168,14 +207,52 @@ impl Screen {
                     self.parameters
                         .show(ui, &view, &mut self.station, self.look.left_handed);
                 }
-                Page::Alarms => alarms::show(ui, &view, &mut self.station.live.journal),
-                Page::Settings => settings::show(ui, &view, &mut self.look, &self.station),
+                Page::Alarms => alarms::show(ui, &view, &mut self.station),
+                Page::Settings => {
+                    // Everything larger is higher than a panel.
+                    scroll().show(ui, |ui| {
+                        settings::show(ui, &view, &mut self.look, &mut self.station, &mut self.refused);
+                    });
+                }
             });
+        if let Some(purpose) = view.asks.take() {
+            self.panel.disarm();
+            self.pad = Some(access::Pad::new(purpose));
+        }
+        // Not at every place that something is drawn through.
+        if !ui.input(|input| input.pointer.any_down()) {
+            self.keep(view.now);
+        }
+    }
+
+    fn type_pin(&mut self, ui: &mut Ui, view: &View) {
+        let pad = self.pad.as_mut();
+        let is_done = scroll()
+            .show(ui, |ui| {
+                pad.is_some_and(|pad| pad.show(ui, view, &mut self.station))
+            })
+            .inner;
+        if is_done {
+            self.pad = None;
+        }
+    }
+
+    /// Writes what has changed of the settings.
+    fn keep(&mut self, now: Duration) {
+        let pins = self.station.access().pins();
+        if (&self.look, pins) == (&self.kept.0, self.kept.1.as_ref()) {
+            return;
+        }
+        self.kept = (self.look.clone(), pins.cloned());
+        if let Err(error) = self.settings.write(&self.look, pins) {
+            let error = config::sentence(error.as_ref());
+            self.station.live.journal.settings_unwritten(now, &error);
+        }
     }
 
     /// Brings `page` in sight.
     pub fn open(&mut self, page: Page) {
-        self.page = page;
+        (self.page, self.pad) = (page, None);
         // Nothing is moved from a page that is not in sight.
         self.panel.disarm();
         match page {
@@ -187,7 +264,7 @@ impl Screen {
 
     /// The screen's clock.
     fn now(&self) -> Duration {
-        self.began.elapsed()
+        (self.clock)()
     }
 
     fn rail(&mut self, ui: &mut Ui, view: &View) {
@@ -262,6 +339,11 @@ impl eframe::App for Screen {
 /// A panel without a ground of its own: where graphics are drawn by software every layer counts.
 fn bare(panel: egui::Panel) -> egui::Panel {
     panel.frame(egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 2)))
+}
+
+/// What may be higher than the panel.
+fn scroll() -> egui::ScrollArea {
+    egui::ScrollArea::vertical().auto_shrink(false)
 }
 
 /// A small heading.

@@ -1,35 +1,18 @@
-//! The page of the screen itself: language, contrast, hand, size.
+//! The page of the screen itself: language, contrast, hand, size; and who may do what.
 
-use super::View;
+use super::{View, levels};
+use crate::settings::{Look, SIZES};
 use crate::station::Station;
 use crate::texts::{Language, Text};
 use eframe::egui::{Grid, RichText, Slider, Ui};
 
-/// How the screen looks.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Look {
-    /// The language.
-    pub language: Language,
-    /// Black, white and few colours.
-    pub high_contrast: bool,
-    /// Stop and controls on the left.
-    pub left_handed: bool,
-    /// Size of everything; 1 is for a panel of 1280 × 800.
-    pub zoom: f32,
-}
-
-impl Default for Look {
-    fn default() -> Self {
-        Self {
-            language: Language::default(),
-            high_contrast: false,
-            left_handed: false,
-            zoom: 1.0,
-        }
-    }
-}
-
-pub(super) fn show(ui: &mut Ui, view: &View, look: &mut Look, station: &Station) {
+pub(super) fn show(
+    ui: &mut Ui,
+    view: &View,
+    look: &mut Look,
+    station: &mut Station,
+    refused: &mut levels::Refused,
+) {
     let words = view.words;
     ui.heading(words.say(Text::Settings));
     ui.add_space(12.0);
@@ -46,14 +29,16 @@ pub(super) fn show(ui: &mut Ui, view: &View, look: &mut Look, station: &Station)
             });
             ui.end_row();
             let label = ui.label(words.say(Text::Size));
-            ui.add(Slider::new(&mut look.zoom, 0.75..=2.5).step_by(0.05))
+            ui.add(Slider::new(&mut look.zoom, SIZES).step_by(0.05))
                 .labelled_by(label.id);
             ui.end_row();
         });
     ui.add_space(8.0);
     ui.checkbox(&mut look.high_contrast, words.say(Text::Contrast));
     ui.checkbox(&mut look.left_handed, words.say(Text::LeftHanded));
-    ui.add_space(24.0);
+    ui.add_space(12.0);
+    levels::show(ui, view, station, refused);
+    ui.add_space(12.0);
     Grid::new("station")
         .num_columns(2)
         .spacing([24.0, 8.0])
@@ -70,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, view: &View, look: &mut Look, station: &Station)
                 ui.end_row();
             }
         });
-    ui.add_space(24.0);
+    ui.add_space(12.0);
     ui.label(RichText::new(words.say(Text::Keys)).color(view.theme.faint));
     let version = words.with(Text::Version, &[env!("CARGO_PKG_VERSION")]);
     ui.label(RichText::new(version).color(view.theme.faint));

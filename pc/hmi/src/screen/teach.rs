@@ -1,6 +1,6 @@
 //! The page for teaching: the tip is jogged to the places of a part, and they are taken down.
 
-use super::{View, bare, jog, title};
+use super::{View, access, bare, jog, title};
 use crate::station::{Action, Station};
 use crate::teaching::Teaching;
 use crate::texts::Text;
@@ -17,8 +17,8 @@ const LARGE: [f32; 2] = [196.0, 56.0];
 #[derive(Default)]
 pub(super) struct TeachPage {
     teaching: Option<Teaching>,
-    /// What was said last, and whether it is an error.
-    said: Option<(String, bool)>,
+    /// What was done last: a text and what is put in, or an error.
+    said: Option<Result<(Text, String), String>>,
     over: Over,
 }
 
@@ -51,7 +51,7 @@ impl TeachPage {
         match self.over {
             Over::Nothing => {}
             Over::Parts => self.choose(ui, view, station),
-            Over::Restart => self.restart(ui, view),
+            Over::Restart => self.restart(ui, view, station),
         }
     }
 
@@ -69,33 +69,42 @@ impl TeachPage {
         };
         let name = name_of(teaching.part());
         ui.label(RichText::new(name).size(18.0).strong());
-        let (ready, none) = (
-            station.may(Action::ByHand, view.now),
-            teaching.points().is_empty(),
-        );
+        if !station.allows(Action::Teach) {
+            let text = RichText::new(access::needs(view, Action::Teach)).color(view.theme.doubt);
+            ui.add(Label::new(text).wrap());
+        }
+        let allowed = station.allows(Action::Teach);
+        let ready = station.may(Action::ByHand, view.now);
+        let none = teaching.points().is_empty() || !allowed;
         let mut done = None;
         ui.horizontal(|ui| {
             if button(ui, view, Text::Take, ready)
                 && let (Some(machine), Some(motion)) = (station.by_hand(), &station.live.motion)
             {
-                done = Some(match teaching.take(machine, &motion.reference) {
-                    Ok(true) => Ok(words.with(Text::Taken, &[&teaching.points().len().to_string()])),
-                    Ok(false) => Ok(words.say(Text::TakenAlready).to_owned()),
-                    Err(error) => Err(error),
-                });
+                done = Some(
+                    match station.teach(|| teaching.take(machine, &motion.reference)) {
+                        Ok(true) => Ok((Text::Taken, teaching.points().len().to_string())),
+                        Ok(false) => Ok((Text::TakenAlready, String::new())),
+                        Err(error) => Err(error),
+                    },
+                );
             }
             if button(ui, view, Text::Undo, !none) {
-                done = Some(teaching.undo().map(|()| words.say(Text::Undone).to_owned()));
+                done = Some(
+                    station
+                        .teach(|| teaching.undo())
+                        .map(|()| (Text::Undone, String::new())),
+                );
             }
         });
         ui.horizontal(|ui| {
             if button(ui, view, Text::PlanProgram, station.by_hand().is_some() && !none)
                 && let Some(machine) = station.by_hand()
             {
-                done = Some(teaching.plan(machine).map(|program| {
+                done = Some(station.teach(|| teaching.plan(machine)).map(|program| {
                     let name = name_of(&program);
                     station.load(program, None);
-                    words.with(Text::Planned, &[&name])
+                    (Text::Planned, name)
                 }));
             }
             if button(ui, view, Text::Restart, rests && !none) {
@@ -125,10 +134,12 @@ impl TeachPage {
     }
 
     fn say(&self, ui: &mut Ui, view: &View) {
-        if let Some((text, wrong)) = &self.said {
-            let colour = if *wrong { view.theme.bad } else { view.theme.good };
-            ui.add(Label::new(RichText::new(text).color(colour)).wrap());
-        }
+        let (text, colour) = match &self.said {
+            None => return,
+            Some(Ok((text, put_in))) => (view.words.with(*text, &[put_in]), view.theme.good),
+            Some(Err(error)) => (error.clone(), view.theme.bad),
+        };
+        ui.add(Label::new(RichText::new(text).color(colour)).wrap());
     }
 
     fn choose(&mut self, ui: &mut Ui, view: &View, station: &Station) {
@@ -147,7 +158,7 @@ impl TeachPage {
                     if ui.add(choice).clicked() {
                         match Teaching::open(&part) {
                             Ok(teaching) => (self.teaching, self.said) = (Some(teaching), None),
-                            Err(error) => self.said = Some((sentence(error.as_ref()), true)),
+                            Err(error) => self.said = Some(Err(sentence(error.as_ref()))),
                         }
                         self.over = Over::Nothing;
                     }
@@ -162,17 +173,21 @@ impl TeachPage {
         }
     }
 
-    fn restart(&mut self, ui: &mut Ui, view: &View) {
+    fn restart(&mut self, ui: &mut Ui, view: &View, station: &Station) {
         let words = view.words;
+        if !station.allows(Action::Teach) {
+            self.over = Over::Nothing;
+            return;
+        }
         let modal = Modal::new(Id::unique("restart")).show(ui.ctx(), |ui| {
             ui.set_width(480.0);
             ui.heading(words.say(Text::RestartTitle));
             ui.add(Label::new(words.say(Text::RestartKeeps)).wrap());
             ui.horizontal(|ui| {
                 if button(ui, view, Text::RestartNow, true) {
-                    let done = self.teaching.as_mut().map(Teaching::restart);
-                    let undone = words.say(Text::Undone).to_owned();
-                    self.said = done.map(|done| told(done.map(|()| undone)));
+                    let teaching = self.teaching.as_mut();
+                    let done = teaching.map(|teaching| station.teach(|| teaching.restart()));
+                    self.said = done.map(|done| told(done.map(|()| (Text::Undone, String::new()))));
                     self.over = Over::Nothing;
                 }
                 if button(ui, view, Text::Cancel, true) {
@@ -200,10 +215,7 @@ fn button(ui: &mut Ui, view: &View, text: Text, enabled: bool) -> bool {
         .clicked()
 }
 
-/// In words, and whether it is an error.
-fn told(done: anyhow::Result<String>) -> (String, bool) {
-    match done {
-        Ok(text) => (text, false),
-        Err(error) => (sentence(error.as_ref()), true),
-    }
+/// An error in words.
+fn told(done: anyhow::Result<(Text, String)>) -> Result<(Text, String), String> {
+    done.map_err(|error| sentence(error.as_ref()))
 }

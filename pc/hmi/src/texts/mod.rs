@@ -4,20 +4,25 @@
 //! English: they name files, lines and values, and are the same in logs and reports.
 
 mod faults;
+mod happened;
 
 use config::parameters::Change;
 use host_link::events::{Next, Phase, Question};
+use serde::{Deserialize, Serialize};
 use shared::state::State;
 
 /// A language of the screen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Language {
     /// English.
     #[default]
+    #[serde(rename = "en")]
     English,
     /// Simplified Chinese.
+    #[serde(rename = "zh-Hans")]
     Chinese,
     /// German.
+    #[serde(rename = "de")]
     German,
 }
 
@@ -294,6 +299,42 @@ texts! {
     Boards: "Boards", "控制板", "Karten";
     Keys: "Keys: F1 or Esc stops, F2 holds, Tab and Enter reach every button, Ctrl and a digit the pages", "按键：F1 或 Esc 停止，F2 保持，Tab 与回车可操作所有按钮，Ctrl+数字键切换页面", "Tasten: F1 oder Esc stoppt, F2 hält an, Tab und Enter erreichen jede Taste, Strg und eine Ziffer die Seiten";
     Version: "Version {}", "版本 {}", "Version {}";
+    // Access
+    Operator: "operator", "操作员", "Bediener";
+    Setter: "setter", "调机员", "Einrichter";
+    Engineer: "engineer", "工程师", "Ingenieur";
+    LevelNow: "Access level", "权限级别", "Zugriffsstufe";
+    NoPinSet: "No PIN is set: everybody may do everything. The engineer's PIN is set first.", "未设置 PIN：任何人均可进行所有操作。请先设置工程师的 PIN。", "Keine PIN gesetzt: Jeder darf alles. Zuerst wird die des Ingenieurs gesetzt.";
+    PinsUnreadable: "The settings file cannot be read and may hold PINs: no more than what an operator may until it is set right.", "设置文件无法读取，其中可能有 PIN：修正之前只允许操作员的操作。", "Die Einstellungsdatei ist nicht lesbar und enthält vielleicht PINs: bis sie berichtigt ist, nur was ein Bediener darf.";
+    AccessAsked: "Access…", "权限…", "Zugriff…";
+    LockScreen: "Lock", "锁定", "Sperren";
+    NeedsLevel: "Needs the access level: {}", "需要权限级别：{}", "Braucht die Zugriffsstufe: {}";
+    SetPinOf: "Set PIN: {}…", "设置 PIN：{}…", "PIN setzen: {}…";
+    TakePinAway: "Remove PIN: {}", "删除 PIN：{}", "PIN entfernen: {}";
+    EnterPin: "Enter the PIN", "输入 PIN", "PIN eingeben";
+    NewPin: "New PIN: {}", "新 PIN：{}", "Neue PIN: {}";
+    NewPinHint: "4 to 8 digits", "4 至 8 位数字", "4 bis 8 Ziffern";
+    PinAgain: "The same PIN again", "再次输入相同的 PIN", "Dieselbe PIN noch einmal";
+    PinsDiffer: "These were two different PINs. Once more from the beginning.", "两次输入的 PIN 不同。请重新输入。", "Das waren zwei verschiedene PINs. Noch einmal von vorn.";
+    WrongPin: "This PIN is wrong.", "PIN 错误。", "Diese PIN ist falsch.";
+    WaitForPin: "Too many wrong PINs: wait {} s.", "PIN 错误次数过多：请等待 {} 秒。", "Zu viele falsche PINs: {} s warten.";
+    NotAPin: "A PIN has 4 to 8 digits.", "PIN 为 4 至 8 位数字。", "Eine PIN hat 4 bis 8 Ziffern.";
+    PinTaken: "Another level has this PIN.", "此 PIN 已用于其他级别。", "Eine andere Stufe hat diese PIN.";
+    EngineerFirst: "The engineer's PIN is set first, and removed last.", "工程师的 PIN 须最先设置、最后删除。", "Die PIN des Ingenieurs wird zuerst gesetzt und zuletzt entfernt.";
+    NoRandomness: "The system gives no random numbers: the PIN is not set.", "系统无法提供随机数：PIN 未设置。", "Das System gibt keine Zufallszahlen: Die PIN ist nicht gesetzt.";
+    DeleteDigit: "Delete", "删除", "Löschen";
+    EnterDigits: "OK", "确定", "OK";
+    LevelEntered: "access level entered: {}", "已进入权限级别：{}", "Zugriffsstufe betreten: {}";
+    ScreenLocked: "screen locked", "屏幕已锁定", "Anzeige gesperrt";
+    LevelFellBack: "screen locked: untouched for 10 minutes", "屏幕已锁定：10 分钟无操作", "Anzeige gesperrt: 10 Minuten lang nicht berührt";
+    WrongPinEntered: "wrong PIN", "PIN 错误", "falsche PIN";
+    PinSet: "PIN set: {}", "已设置 PIN：{}", "PIN gesetzt: {}";
+    PinTakenAway: "PIN removed: {}", "已删除 PIN：{}", "PIN entfernt: {}";
+    // What outlives the screen
+    EarlierHistory: "Earlier, before the screen was opened", "更早（屏幕打开之前）", "Früher, bevor die Anzeige geöffnet wurde";
+    RecordUnwritten: "What happens is not being recorded: {}", "事件未能记录到文件：{}", "Der Verlauf wird nicht aufgezeichnet: {}";
+    SettingsUnread: "Settings not read: {}. Set the file right, or delete it, and open the screen again; until then nothing is written to it.", "设置未读取：{}。请修正或删除该文件，然后重新打开屏幕；在此之前不会写入该文件。", "Einstellungen nicht gelesen: {}. Die Datei berichtigen oder löschen und die Anzeige neu öffnen; bis dahin wird nichts hineingeschrieben.";
+    SettingsUnwritten: "Settings not kept: {}", "设置未保存：{}", "Einstellungen nicht gesichert: {}";
 }
 
 /// A language, to say things in.

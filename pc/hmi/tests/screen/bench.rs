@@ -4,11 +4,14 @@ use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use hmi::running::Place;
-use hmi::screen::{Look, Page, Screen};
+use hmi::screen::{Page, Screen};
+use hmi::settings::Settings;
 use hmi::station::Station;
 use hmi::texts::Language;
 use plant_file::PlantChoice;
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use world::BoardChoice;
@@ -30,6 +33,8 @@ pub struct Bench {
     pub harness: Harness<'static, Screen>,
     /// Reports go here.
     pub folder: tempfile::TempDir,
+    /// How much later it is for the screen than by the clock.
+    pub ahead: Rc<Cell<Duration>>,
 }
 
 impl Bench {
@@ -70,7 +75,10 @@ impl Bench {
             reports: folder.path().to_owned(),
         };
         let station = Station::new(machine, "../../programs".into(), place);
-        let screen = Screen::new(station, Look::default());
+        let settings = Settings::read(folder.path().join("hmi.toml"));
+        let (ahead, began) = (Rc::new(Cell::new(Duration::ZERO)), Instant::now());
+        let later = Rc::clone(&ahead);
+        let screen = Screen::by_clock(station, settings, move || began.elapsed() + later.get());
         let harness = Harness::builder()
             .with_size(SIZE)
             .wgpu()
@@ -79,7 +87,23 @@ impl Bench {
                 ctx.add_font_provider(Arc::new(fonts.with_locale(Some("zh-Hans"))));
             })
             .build_eframe(|_| screen);
-        Self { harness, folder }
+        Self {
+            harness,
+            folder,
+            ahead,
+        }
+    }
+
+    /// Closes the screen, does `meanwhile` in its folder, and opens it again.
+    pub fn again(mut self, meanwhile: impl FnOnce(&Path)) -> Self {
+        let (machine, pace) = (
+            self.station().machine_file().to_owned(),
+            self.station().place.pace,
+        );
+        let Self { harness, folder, .. } = self;
+        drop(harness);
+        meanwhile(folder.path());
+        Self::with(machine, folder, pace)
     }
 
     pub fn station(&mut self) -> &mut Station {

@@ -1,5 +1,6 @@
 //! The screen without a window, on simulated boards that run as fast as they can.
 
+mod access;
 mod bench;
 mod day;
 mod parameters;

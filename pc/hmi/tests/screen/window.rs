@@ -149,6 +149,7 @@ fn a_weld_is_started_by_two_taps_in_the_window_and_finishes() {
         "1000",
     ]);
     command.arg("--reports").arg(folder.path());
+    command.arg("--settings").arg(folder.path().join("hmi.toml"));
     command
         .env("DISPLAY", &display)
         .env_remove("WAYLAND_DISPLAY")

@@ -1,7 +1,7 @@
 //! What is changed and not written yet, and what can be done with it.
 
 use super::{Over, ParametersPage};
-use crate::screen::{View, title};
+use crate::screen::{View, access, title};
 use crate::station::{Action, Station};
 use crate::texts::Text;
 use eframe::egui::{Button, Color32, Label, RichText, ScrollArea, Ui};
@@ -32,7 +32,7 @@ impl ParametersPage {
         if let Some(error) = parameters.refused() {
             told.push((words.with(Text::Refused, &[&error.to_string()]), view.theme.bad));
         }
-        if !is_free {
+        if !is_free && station.allows(Action::Write) {
             told.push((words.say(Text::WriteAtRest).to_owned(), view.theme.doubt));
         }
         let height = ui.available_height() - HEIGHT - 16.0;
@@ -42,6 +42,7 @@ impl ParametersPage {
             .min_scrolled_height(height)
             .auto_shrink(false)
             .show(ui, |ui| {
+                access::needed(ui, view, station, Action::Write);
                 for (text, colour) in told {
                     ui.add(Label::new(RichText::new(text).size(15.0).color(colour)).wrap());
                 }

@@ -4,7 +4,7 @@ mod block;
 mod homing;
 mod positions;
 
-use super::{View, bare, jog, title};
+use super::{View, access, bare, jog, title};
 use crate::station::{Action, Station};
 use crate::texts::Text;
 use eframe::egui::{self, Button, Color32, Id, Label, Modal, RichText, Ui};
@@ -63,14 +63,14 @@ impl SetUpPage {
             }
             let label = RichText::new(view.words.say(Text::DrivesOff)).size(20.0);
             let off = Button::new(label).min_size(LARGE.into());
-            if ui
-                .add_enabled(station.may(Action::ByHand, view.now), off)
-                .clicked()
-            {
+            if ui.add_enabled(station.may(Action::Off, view.now), off).clicked() {
                 station.send(Command::ByHand(ByHand::Off), view.now);
             }
         });
-        if station.is_running() && station.by_hand().is_none() {
+        if !station.allows(Action::Home) {
+            let text = RichText::new(access::needs(view, Action::Home)).color(view.theme.doubt);
+            ui.add(Label::new(text).wrap());
+        } else if station.is_running() && station.by_hand().is_none() {
             ui.add(Label::new(view.words.say(Text::ProgramRuns)).wrap());
         }
     }
