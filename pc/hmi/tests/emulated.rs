@@ -36,7 +36,10 @@ fn a_day_at_the_screen_on_emulated_boards() {
     let mut day = bound_to_parent(std::env::current_exe().expect("this program"));
     day.args(["--exact", "the_day", "--ignored"])
         .env(SESSION_VARIABLE, session);
-    assert!(day.status().expect("a program that can be run").success());
+    // What it prints is of a test of its own, and is counted as this one.
+    let ended = day.output().expect("a program that can be run");
+    let said = [ended.stdout, ended.stderr].map(|said| String::from_utf8_lossy(&said).into_owned());
+    assert!(ended.status.success(), "{}{}", said[0], said[1]);
     boards.check().unwrap_or_else(|error| panic!("{error}"));
 }
 
