@@ -119,21 +119,15 @@ enum Hand {
 
 /// What was asked for since; whatever is not for this jog stays, to be done after it.
 fn hand(session: &mut Session, jog: &Jog) -> Hand {
-    let (same, fresh) = match session.control.by_hand() {
+    let hand = match session.control.by_hand() {
         None => return Hand::Silent,
-        Some(ByHand::Jog(again)) => (again.renews(jog), again.age() <= STALE),
-        Some(ByHand::LetGo) => (true, false),
-        Some(ByHand::Block(_) | ByHand::Off) => return Hand::LetsGo,
+        Some(ByHand::Jog(again)) if again.renews(jog) && again.age() <= STALE => Hand::Holds,
+        Some(ByHand::Jog(again)) if again.renews(jog) => Hand::Silent,
+        Some(ByHand::LetGo) => Hand::LetsGo,
+        Some(_) => return Hand::LetsGo,
     };
-    let let_go = matches!(session.control.by_hand(), Some(ByHand::LetGo));
-    if same {
-        session.control.take_by_hand();
-    }
-    match (same, fresh, let_go) {
-        (false, ..) | (_, _, true) => Hand::LetsGo,
-        (true, true, _) => Hand::Holds,
-        (true, false, _) => Hand::Silent,
-    }
+    session.control.take_by_hand();
+    hand
 }
 
 /// Runs the path that is loaded as long as somebody holds to it.
@@ -207,22 +201,17 @@ impl Held {
             return None;
         }
         let now = session.boards.now();
-        let asked = hand(session, jog);
         let by_itself = jog.step.is_some() && now >= self.since + RENEWED;
-        match asked {
+        match hand(session, jog) {
             Hand::LetsGo => {
                 self.let_go = true;
                 Some(false)
             }
-            Hand::Holds => {
+            Hand::Silent if !by_itself => None,
+            Hand::Holds | Hand::Silent => {
                 self.since = now;
                 Some(true)
             }
-            Hand::Silent if by_itself => {
-                self.since = now;
-                Some(true)
-            }
-            Hand::Silent => None,
         }
     }
 
