@@ -2,8 +2,12 @@
 
 use crate::matching::{Match, Matching, Strobe};
 use crate::{Arrival, Camera, CameraError, GigeConfig, Picture};
+use ::aravis::glib::object::CastNone;
 use ::aravis::prelude::*;
-use ::aravis::{AcquisitionMode, Auto, Buffer, BufferStatus, PixelFormat, RangeCheckPolicy, Stream, glib};
+use ::aravis::{
+    AcquisitionMode, Auto, Buffer, BufferStatus, GvDevice, GvStreamOption, PixelFormat, RangeCheckPolicy,
+    Stream, glib,
+};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -33,6 +37,8 @@ pub struct GigeCamera {
     /// Aravis has received nothing from the camera for seconds.
     gone: Arc<AtomicBool>,
     matching: Matching,
+    /// When the strobe was notified with which the count of frames began.
+    began: Option<SystemTime>,
     /// A frame whose strobe is not known yet.
     early: Option<Buffer>,
     /// What went wrong at a strobe.
@@ -121,6 +127,7 @@ impl GigeCamera {
             camera,
             gone,
             matching: Matching::default(),
+            began: None,
             early: None,
             failed: None,
         })
@@ -137,6 +144,16 @@ impl GigeCamera {
         } else {
             self.stream.timeout_pop_buffer(left.as_micros() as u64)
         }
+    }
+
+    /// Whether a frame belongs to a strobe before the one with which the count begins: however late it is looked at.
+    fn is_stale(&self, buffer: &Buffer) -> bool {
+        let began = self.began.filter(|_| self.matching.waiting() > 0);
+        let began = began.unwrap_or_else(SystemTime::now);
+        let came_ns = buffer.system_timestamp();
+        let came = UNIX_EPOCH + Duration::from_nanos(came_ns);
+        // 0: its first packet was lost, and with it when it came.
+        came_ns != 0 && began.duration_since(came).is_ok_and(|before| before > STALE)
     }
 
     /// Takes the pixels of a frame and gives its room back to the stream. Nothing of a frame that is not whole.
@@ -165,7 +182,9 @@ impl GigeCamera {
 
 impl Camera for GigeCamera {
     fn strobed(&mut self, capture: u32, time_us: u64) {
-        self.matching.strobed(Strobe { capture, time_us });
+        if self.matching.strobed(Strobe { capture, time_us }) {
+            self.began = Some(SystemTime::now());
+        }
         if self.software
             && let Err(error) = self.camera.software_trigger()
         {
@@ -201,7 +220,7 @@ impl Camera for GigeCamera {
                 }
                 return Ok(Arrival::Nothing);
             };
-            if !self.matching.counts() && age(&buffer) > STALE {
+            if !self.matching.counts() && self.is_stale(&buffer) {
                 self.stream.push_buffer(buffer);
                 continue;
             }
@@ -246,6 +265,10 @@ fn centre(camera: &::aravis::Camera, binning: i32, rows: i32, columns: i32) -> R
 
 /// Starts pictures, as they are triggered.
 fn start(camera: &::aravis::Camera) -> Result<Stream, glib::Error> {
+    if let Some(device) = camera.device().and_downcast::<GvDevice>() {
+        // Aravis takes a raw socket where the program is root's: it lost packets on a loaded machine, and a PC is seldom root's.
+        device.set_stream_options(GvStreamOption::PACKET_SOCKET_DISABLED);
+    }
     let stream = camera.create_stream()?;
     let bytes = camera.payload()? as usize;
     for _ in 0..BUFFERS {
@@ -253,10 +276,4 @@ fn start(camera: &::aravis::Camera) -> Result<Stream, glib::Error> {
     }
     camera.start_acquisition()?;
     Ok(stream)
-}
-
-/// How long ago a frame came.
-fn age(buffer: &Buffer) -> Duration {
-    let came = UNIX_EPOCH + Duration::from_nanos(buffer.system_timestamp());
-    SystemTime::now().duration_since(came).unwrap_or_default()
 }
