@@ -87,6 +87,8 @@ pub(super) struct Tracking {
     pub clock_difference_us: Option<f64>,
     /// Where the heads are on the tool.
     pub heads: Heads,
+    /// Nearer to their targets the slides are left alone \[mm\].
+    pub dead_band_mm: f64,
     watch: Option<Watch>,
     /// How the slides look for seams.
     pub search: SeamSearchFigures,
@@ -136,6 +138,7 @@ impl Tracking {
             clock_residual_us: None,
             clock_difference_us: None,
             heads,
+            dead_band_mm: unit.board.tracking.dead_band_mm,
             watch: None,
             search: SeamSearchFigures::new(unit)?,
             in_sight: [0; SIDES],

@@ -2,18 +2,18 @@
 
 use crate::JobError;
 use crate::session::Session;
-use shared::io::{SIDES, SLIDE_NAMES, SLIDES};
+use shared::io::{SLIDE_NAMES, SLIDES};
 use shared::protocol::{Request, Role};
 use std::time::Duration;
 
-/// Nearer to their targets, slides are there \[mm\].
+/// Nearer to their targets than this and their dead band, slides are there \[mm\].
 const THERE_MM: f64 = 0.005;
 /// Longest time for the longest way.
 const LIMIT: Duration = Duration::from_secs(10);
 
 impl Session<'_> {
-    /// Moves the slides to `target_mm` (U1, V1, U2, V2) and waits until they are there, to 0.005 mm; the tracker board is
-    /// ready, and tracks no path.
+    /// Moves the slides to `target_mm` (U1, V1, U2, V2) and waits until they are there, to 0.005 mm and the dead band of
+    /// their law; the tracker board is ready, and tracks no path.
     ///
     /// # Errors
     /// [`JobError::SlideAway`]; [`JobError::Link`] of a target beyond the travel, which names the slide.
@@ -47,12 +47,11 @@ impl Session<'_> {
     /// The first slide that is not at its target, and how far it is off \[mm\].
     pub(crate) fn away(&self, target_mm: &[f64; SLIDES]) -> Option<(usize, f64)> {
         let at = self.slides_mm();
-        let fitted = 2 * self
-            .tracking
-            .as_ref()
-            .map_or(SIDES, |tracking| tracking.heads.sides().len());
-        let away = (0..fitted).map(|slide| (slide, (at[slide] - target_mm[slide]).abs()));
-        away.into_iter().find(|(_, away_mm)| *away_mm > THERE_MM)
+        let tracking = self.tracking.as_ref()?;
+        let away = |slide: usize| (slide, (at[slide] - target_mm[slide]).abs());
+        (0..2 * tracking.heads.sides().len())
+            .map(away)
+            .find(|(_, away_mm)| *away_mm > tracking.dead_band_mm + THERE_MM)
     }
 }
 

@@ -72,13 +72,17 @@ impl Boards for Standing {
     }
 }
 
-/// A session on `boards` that is ready for a path.
-fn ready(boards: &mut dyn Boards, then: impl FnOnce(&mut Session)) {
+/// The dual-beam gantry as shipped.
+fn shipped() -> MachineFile {
     let text = include_str!("../../../../machines/dual-beam-gantry.toml");
-    let machine = MachineFile::parse("m.toml", text).unwrap();
+    MachineFile::parse("m.toml", text).unwrap()
+}
+
+/// A session on `boards` with `machine` that is ready for a path.
+fn ready(boards: &mut dyn Boards, machine: &MachineFile, then: impl FnOnce(&mut Session)) {
     let program = interpret("G43.4\nG0 X900 Y900 Z100 A0 B0 C0\nM2", Options::default()).unwrap();
     let job = Job {
-        machine: &machine,
+        machine,
         work: Work::Program(&program),
         part: None,
         speed_m_per_min: None,
@@ -93,14 +97,14 @@ fn ready(boards: &mut dyn Boards, then: impl FnOnce(&mut Session)) {
         },
     };
     let (_remote, mut control) = host_link::control();
-    let mut session = Session::begin(boards, &machine, &Dark, job.spooling.clone(), &mut control).unwrap();
+    let mut session = Session::begin(boards, machine, &Dark, job.spooling.clone(), &mut control).unwrap();
     make_ready(&mut session, &job).unwrap();
     then(&mut session);
 }
 
 #[test]
 fn slides_are_where_they_were_sent_and_what_they_went_through_is_recorded() {
-    ready(&mut SimulatedBoards::default(), |session| {
+    ready(&mut SimulatedBoards::default(), &shipped(), |session| {
         let before = session.record.tracker().len();
         let target = [3.0, -1.0, 0.5, -11.0];
         session.move_slides(target).unwrap();
@@ -113,8 +117,23 @@ fn slides_are_where_they_were_sent_and_what_they_went_through_is_recorded() {
 }
 
 #[test]
+fn slides_that_are_left_alone_in_a_dead_band_are_there_within_it() {
+    let mut machine = shipped();
+    let dead_band_mm = 0.04;
+    machine.tracking.as_mut().unwrap().board.tracking.dead_band_mm = dead_band_mm;
+    ready(&mut SimulatedBoards::default(), &machine, |session| {
+        let target = [3.0, -1.0, 0.5, -11.0];
+        session.move_slides(target).unwrap();
+        for (there, target) in session.slides_mm().iter().zip(target) {
+            let away_mm = (there - target).abs();
+            assert!(away_mm <= dead_band_mm + 0.005, "{there} instead of {target} mm");
+        }
+    });
+}
+
+#[test]
 fn a_place_beyond_the_travel_is_refused_by_name() {
-    ready(&mut SimulatedBoards::default(), |session| {
+    ready(&mut SimulatedBoards::default(), &shipped(), |session| {
         let refused = session.move_slides([0.0, 0.0, 0.0, 12.5]).unwrap_err();
         assert_eq!(
             refused.to_string(),
@@ -126,7 +145,7 @@ fn a_place_beyond_the_travel_is_refused_by_name() {
 #[test]
 fn a_slide_that_stays_away_is_named() {
     let mut boards = Standing(SimulatedBoards::default());
-    ready(&mut boards, |session| {
+    ready(&mut boards, &shipped(), |session| {
         let [u1, v1, u2, v2] = session.slides_mm();
         let away = session.move_slides([u1, v1 + 2.0, u2, v2]).unwrap_err();
         assert_eq!(
