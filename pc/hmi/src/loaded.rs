@@ -94,6 +94,10 @@ impl Loaded {
         let mut paths = planner.program(&program, &from, None).with_context(of_program)?;
         let judged = part.as_ref().is_some_and(PartFile::keeps_feed);
         check_constant_speed(&paths, judged).with_context(of_program)?;
+        if let Some(part) = &part {
+            part.check_judging(&machine, planner.kinematics())
+                .with_context(|| format!("part {}", part.path().display()))?;
+        }
         if let Some(line) = from_line {
             paths = planner
                 .from_line(&program, paths, line, &from)

@@ -134,6 +134,11 @@ impl Station {
         self.running.is_some()
     }
 
+    /// Whether the job that runs is that of a program, not one by hand.
+    pub fn runs_program(&self) -> bool {
+        self.is_running() && self.by_hand.is_none()
+    }
+
     /// How the last job ended.
     pub fn last(&self) -> Option<&Outcome> {
         self.last.as_ref()

@@ -37,6 +37,7 @@ use config::toml_file::{self, TomlError};
 use dual_beam::DualBeamPlan;
 use nc::{Options, interpret};
 use serde::Deserialize;
+use shared::kinematics::Kinematics;
 use std::path::{Path, PathBuf};
 use teach::TaughtPoint;
 
@@ -44,6 +45,9 @@ use teach::TaughtPoint;
 pub trait Kind {
     /// Plans the program.
     fn plan(&self, context: &PartContext) -> anyhow::Result<Plan>;
+
+    /// Whether all that a run is judged by is there.
+    fn check_judging(&self, context: &PartContext, kinematics: &Kinematics) -> anyhow::Result<()>;
 
     /// Judges a run of the planned program by where the tool truly was.
     fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement>;
@@ -243,6 +247,15 @@ impl PartFile {
         let plan = self.plan(machine, title)?;
         let paths = checked(&plan.program, planner, machine, self.keeps_feed())?;
         Ok((plan, paths))
+    }
+
+    /// Whether a run on `machine` with `kinematics` can be judged: all that it is judged by is there.
+    ///
+    /// # Errors
+    /// A sentence: what is missing or wrong.
+    pub fn check_judging(&self, machine: &MachineFile, kinematics: &Kinematics) -> anyhow::Result<()> {
+        let context = self.context(machine, "");
+        self.part.kind().check_judging(&context, kinematics)
     }
 
     /// Judges a run of the planned program.

@@ -8,6 +8,7 @@ use dual_beam::{
 };
 use nalgebra::Vector3;
 use serde::Deserialize;
+use shared::kinematics::Kinematics;
 use std::path::{Path, PathBuf};
 use teach::seam::{SeamTeaching, read_seam_points};
 
@@ -135,6 +136,11 @@ impl Kind for TSeam {
             program: plan.program,
             notes,
         })
+    }
+
+    /// Limits alone.
+    fn check_judging(&self, _: &PartContext, _: &Kinematics) -> anyhow::Result<()> {
+        Ok(())
     }
 
     /// The true seams are not part of the part file: they come from the simulated world, or from a

@@ -320,6 +320,24 @@ fn a_part_that_cannot_be_planned_or_read_is_named() {
 }
 
 #[test]
+fn a_program_whose_part_has_not_all_that_it_is_judged_by_is_refused_before_anything_moves() {
+    for file in ["lap-joint.ngc", "lap-joint.toml", "welddata.toml"] {
+        written(file, &text_of(&format!("programs/{file}")));
+    }
+    let said = Attempt {
+        program: scratch("lap-joint.ngc"),
+        machine: shipped("machines/wire-arc.toml"),
+        seam: None,
+        ..Attempt::new()
+    }
+    .refusal();
+    assert_says(
+        &said,
+        &["part", "lap-joint.toml", "lap-joint-taught.csv is not there"],
+    );
+}
+
+#[test]
 fn a_panel_is_not_taught_by_a_machine_without_a_probe_nor_with_settings_that_make_no_sense() {
     let taught_by = |program: PathBuf, machine: &str| {
         let attempt = Attempt {

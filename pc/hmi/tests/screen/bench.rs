@@ -8,6 +8,8 @@ use hmi::screen::{Page, Screen};
 use hmi::settings::Settings;
 use hmi::station::Station;
 use hmi::texts::Language;
+use host_link::events::Question;
+use host_link::{ByHand, Command};
 use plant_file::PlantChoice;
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
@@ -27,6 +29,11 @@ const PACE: f64 = 1e6;
 
 /// How often a picture is tried again.
 const TRIES: usize = 10;
+
+/// Whether the machine is operated by hand, and stands.
+pub fn waits(station: &Station) -> bool {
+    station.live.question == Some(Question::ByHand)
+}
 
 /// See the module.
 pub struct Bench {
@@ -59,11 +66,15 @@ impl Bench {
 
     /// Of the dual-beam gantry, with a machine file of its own, which is given back.
     pub fn with_own_file() -> (Self, PathBuf) {
+        Self::with_own_file_of("dual-beam-gantry")
+    }
+
+    pub fn with_own_file_of(machine: &str) -> (Self, PathBuf) {
         let folder = tempfile::tempdir().expect("a folder");
         let machines = folder.path().join("machine");
         std::fs::create_dir(&machines).expect("a folder");
-        let file = machines.join("dual-beam-gantry.toml");
-        std::fs::copy("../../machines/dual-beam-gantry.toml", &file).expect("copied");
+        let file = machines.join(machine).with_extension("toml");
+        std::fs::copy(format!("../../machines/{machine}.toml"), &file).expect("copied");
         (Self::with(file.clone(), folder, PACE), file)
     }
 
@@ -114,6 +125,14 @@ impl Bench {
         self.station().load(program.into(), None);
         self.until("the program is loaded", |station| !station.is_loading());
         assert_eq!(self.station().refused(), None);
+    }
+
+    /// Carries out a block by hand.
+    pub fn block(&mut self, block: &str) {
+        let block = ByHand::Block(block.to_owned());
+        self.station().send(Command::ByHand(block), Duration::ZERO);
+        self.until("it moves", |station| !waits(station));
+        self.until("it is there", waits);
     }
 
     pub fn weld(&mut self, program: &str) {

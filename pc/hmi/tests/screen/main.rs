@@ -7,5 +7,6 @@ mod parameters;
 mod pictures;
 mod set_up;
 mod teach;
+mod whole_day;
 #[cfg(target_os = "linux")]
 mod window;

@@ -1,20 +1,15 @@
 //! Setting up, on simulated boards in real time: home, arm, jog by button and key, carry out blocks.
 
-use crate::bench::{Bench, PROGRAM};
+use crate::bench::{Bench, PROGRAM, waits};
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable;
 use hmi::screen::Page;
-use hmi::station::{Action, Station};
-use host_link::events::Question;
+use hmi::station::Action;
 use shared::state::State;
 use std::time::{Duration, Instant};
 
 /// Longer than a jog takes to end that is not held any more, by the clock: the lease and braking.
 const ENDED: Duration = Duration::from_secs(2);
-
-fn waits(station: &Station) -> bool {
-    station.live.question == Some(Question::ByHand)
-}
 
 fn axes(bench: &mut Bench) -> [f64; 6] {
     bench.station().live.motion.as_ref().expect("a state").axes
@@ -182,9 +177,7 @@ fn a_program_begins_from_a_machine_that_is_operated_by_hand() {
     bench.open(Page::Run);
     bench.tap("Start…");
     bench.tap("Weld now");
-    bench.until("the program's job runs", |station| {
-        station.is_running() && station.by_hand().is_none()
-    });
+    bench.until("the program's job runs", |station| station.runs_program());
     bench.tap("STOP");
     bench.until("the job is over", |station| !station.is_running());
 }

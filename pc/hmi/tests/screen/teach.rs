@@ -1,16 +1,9 @@
 //! Teaching a seam by places, planning it, and welding it.
 
-use crate::bench::Bench;
+use crate::bench::{Bench, waits};
 use egui_kittest::kittest::Queryable;
 use hmi::screen::Page;
 use hmi::station::Station;
-use host_link::events::Question;
-use host_link::{ByHand, Command};
-use std::time::Duration;
-
-fn waits(station: &Station) -> bool {
-    station.live.question == Some(Question::ByHand)
-}
 
 /// Taps a step of 10 mm, and waits until it is done.
 fn step(bench: &mut Bench, direction: &str) {
@@ -46,10 +39,7 @@ fn places_are_taken_taken_out_and_planned_and_the_seam_is_welded() {
     bench.tap("Home…");
     bench.tap("Home now");
     bench.until("it is ready", waits);
-    let block = ByHand::Block("G0 X-60 Y-20 Z10".to_owned());
-    bench.station().send(Command::ByHand(block), Duration::ZERO);
-    bench.until("it moves", |station| !waits(station));
-    bench.until("it is there", waits);
+    bench.block("G0 X-60 Y-20 Z10");
 
     bench.open(Page::Teach);
     bench.tap("Take");
@@ -90,9 +80,7 @@ fn places_are_taken_taken_out_and_planned_and_the_seam_is_welded() {
     bench.open(Page::Run);
     bench.tap("Start…");
     bench.tap("Weld now");
-    bench.until("the job runs", |station| {
-        station.is_running() && station.by_hand().is_none()
-    });
+    bench.until("the job runs", |station| station.runs_program());
     bench.until("the job is over", |station| !station.is_running());
     assert_eq!(bench.station().last().expect("an outcome").error, None);
 

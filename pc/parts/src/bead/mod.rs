@@ -33,6 +33,7 @@ use points::LONGEST;
 use program::Pass;
 use route::Route;
 use serde::Deserialize;
+use shared::kinematics::Kinematics;
 use speed::FeedStep;
 use std::borrow::Cow;
 use std::path::PathBuf;
@@ -249,15 +250,32 @@ impl Kind for Bead {
         Ok(Plan { program, notes })
     }
 
+    fn check_judging(&self, context: &PartContext, _: &Kinematics) -> anyhow::Result<()> {
+        self.with_route(context, |_, _| Ok(()))
+    }
+
     fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
-        let window = self.window(context)?;
-        let (curve, name) = self.curve(context)?;
-        let route = Route::build(curve.nurbs(&name)?, &name, self.lead_mm, self.overlap_mm)?;
-        judge::judge(&route, self.layers(), &window, &self.limits, run)
+        self.with_route(context, |window, route| {
+            judge::judge(route, self.layers(), window, &self.limits, run)
+        })
     }
 
     fn speed_dip(&self) -> Option<Percent> {
         Some(self.limits.speed_dip_percent)
+    }
+}
+
+impl Bead {
+    /// Does `with` by speeds and route that a run is judged by.
+    fn with_route<T>(
+        &self,
+        context: &PartContext,
+        with: impl FnOnce(&ProcessWindow, &Route) -> anyhow::Result<T>,
+    ) -> anyhow::Result<T> {
+        let window = self.window(context)?;
+        let (curve, name) = self.curve(context)?;
+        let route = Route::build(curve.nurbs(&name)?, &name, self.lead_mm, self.overlap_mm)?;
+        with(&window, &route)
     }
 }
 

@@ -15,7 +15,7 @@ use config::table::FARTHEST_MM;
 use config::{RangeError, in_range};
 use nalgebra::Vector3;
 use serde::Deserialize;
-use shared::kinematics::KinematicsError;
+use shared::kinematics::{Kinematics, KinematicsError};
 use std::borrow::Cow;
 use std::path::PathBuf;
 use teach::{GuidePoint, TaughtPoint, TeachingConfig, read_points};
@@ -224,6 +224,10 @@ impl Kind for Panel {
         let points = self.points(context)?;
         self.check_speed(context, &points)?;
         Ok(self.program(context, &points)?)
+    }
+
+    fn check_judging(&self, context: &PartContext, _: &Kinematics) -> anyhow::Result<()> {
+        self.points(context).map(drop)
     }
 
     fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {

@@ -207,6 +207,10 @@ impl Kind for Saddle {
         program::plan(self, &seam, notes, context)
     }
 
+    fn check_judging(&self, context: &PartContext, kinematics: &Kinematics) -> anyhow::Result<()> {
+        self.seam(context.directory, kinematics).map(drop)
+    }
+
     fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {
         let (seam, _) = self.seam(context.directory, run.kinematics)?;
         judge::judge(self, &seam, run)

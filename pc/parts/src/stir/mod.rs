@@ -18,7 +18,7 @@ use error::StirError;
 use passes::{Pass, passes};
 use serde::Deserialize;
 use shared::config::BeamConfig;
-use shared::kinematics::{AxisConfig, KinematicsConfig, StirTilt};
+use shared::kinematics::{AxisConfig, Kinematics, KinematicsConfig, StirTilt};
 use std::f64::consts::PI;
 
 /// Slots of the axes.
@@ -115,6 +115,10 @@ impl Kind for Stir {
             program: program::write(self, &job, context),
             notes: program::notes(self, &job, context.machine),
         })
+    }
+
+    fn check_judging(&self, context: &PartContext, _: &Kinematics) -> anyhow::Result<()> {
+        Ok(self.job(context.machine).map(drop)?)
     }
 
     fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {

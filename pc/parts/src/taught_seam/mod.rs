@@ -12,6 +12,7 @@ use config::machine::MachineFile;
 use error::TaughtSeamError;
 use serde::Deserialize;
 use shared::geometry::Pose;
+use shared::kinematics::Kinematics;
 use std::path::{Path, PathBuf};
 use teach::{TipPoint, read_tip_points};
 
@@ -75,6 +76,10 @@ impl Kind for TaughtSeam {
         let points = self.points(context.directory)?;
         self.check()?;
         Ok(program::plan(self, &points, context)?)
+    }
+
+    fn check_judging(&self, context: &PartContext, _: &Kinematics) -> anyhow::Result<()> {
+        Ok(self.points(context.directory).map(drop)?)
     }
 
     fn judge(&self, context: &PartContext, run: &Run) -> anyhow::Result<Judgement> {

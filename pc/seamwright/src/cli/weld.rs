@@ -302,6 +302,10 @@ impl Weld {
         };
         let paths = planned.with_context(|| owner.clone())?;
         check_constant_speed(&paths, judged).context(owner)?;
+        if let Some(part) = job.part {
+            part.check_judging(job.machine, planner.kinematics())
+                .with_context(|| format!("part {}", part.path().display()))?;
+        }
         slower(&paths).for_each(|found| errln!("seamwright: warning: {found}"));
         self.tell_waits(program);
         if self.seam_of.is_none() && self.cameras.pictures() {

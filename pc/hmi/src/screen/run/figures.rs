@@ -48,7 +48,7 @@ fn told(station: &Station, loaded: &Loaded) -> [(Text, String); 5] {
         .as_ref()
         .filter(|motion| motion.line > 0)
         .map(|motion| motion.line.to_string());
-    let (time, seconds) = match live.place().filter(|_| station.is_running()) {
+    let (time, seconds) = match live.place().filter(|_| station.runs_program()) {
         Some((path, s_mm)) => (
             Text::Remaining,
             loaded.remaining_s(path, s_mm) / (station.override_percent / 100.0).max(0.01),

@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &mut Station) {
         .motion
         .as_ref()
         .map(|motion| motion.line)
-        .filter(|_| station.is_running());
+        .filter(|_| station.runs_program());
     ui.spacing_mut().item_spacing.y = 0.0;
     ui.spacing_mut().interact_size.y = LINE;
     ui.spacing_mut().button_padding = [4.0, 0.0].into();
