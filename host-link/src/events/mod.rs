@@ -6,6 +6,7 @@ mod stream;
 pub use phase::{Next, Phase, Question};
 pub use stream::{Events, Interest, NoEvent, Received, Subscription};
 
+use serde::{Deserialize, Serialize};
 use shared::protocol::{
     Capture, Identity, Measurement, MotionSample, MotionStatus, TrackerSample, TrackerStatus,
 };
@@ -114,7 +115,7 @@ pub struct MeasuredPicture {
 }
 
 /// A seam in a picture, in the camera's frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeamInPicture {
     /// Across travel, u \[mm\].
     pub lateral_mm: f64,

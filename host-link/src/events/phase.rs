@@ -1,9 +1,16 @@
 //! The phases of a job, and its questions to the operator.
 
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
+use shared::io::MOTOR_NAMES;
+use std::borrow::Cow;
 use std::fmt;
 
+/// The name of a motor, one of [`MOTOR_NAMES`].
+type MotorName = &'static str;
+
 /// A part of a job. Its text is a short description in plain English.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
     /// The boards get the machine's parameters.
     SettingUp,
@@ -54,7 +61,8 @@ pub enum Phase {
     /// A motor is excited, and what it does is captured.
     Exciting {
         /// The motor.
-        motor: &'static str,
+        #[serde(deserialize_with = "motor_name")]
+        motor: MotorName,
         /// Number of the excitation, from 1.
         number: usize,
         /// How many there are.
@@ -96,7 +104,7 @@ impl fmt::Display for Phase {
 }
 
 /// What the machine waits for until the operator answers.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Question {
     /// May it continue, in single block? [`crate::Command::Resume`] says so.
     GoOn {
@@ -106,7 +114,7 @@ pub enum Question {
     /// The program stops here (M0, M1, M60). [`crate::Command::Resume`] continues.
     Stop {
         /// The code.
-        code: &'static str,
+        code: Cow<'static, str>,
         /// Line of the program.
         line: u32,
         /// What the program says of it.
@@ -130,7 +138,7 @@ pub enum Question {
 }
 
 /// What comes next in single block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Next {
     /// A line of the program.
     Line(u32),
@@ -147,5 +155,31 @@ impl fmt::Display for Next {
             Self::Approach => f.write_str("the next move of the approach"),
             Self::Parking => f.write_str("parking"),
         }
+    }
+}
+
+fn motor_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<MotorName, D::Error> {
+    let told = Cow::<str>::deserialize(deserializer)?;
+    let known = MOTOR_NAMES.into_iter().find(|name| *name == told);
+    known.ok_or_else(|| D::Error::custom(format_args!("there is no motor {told}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_phase_with_a_motor_is_read_back_and_an_unknown_motor_refused() {
+        let phase = Phase::Exciting {
+            motor: MOTOR_NAMES[1],
+            number: 2,
+            of: 7,
+        };
+        let mut bytes = [0; 16];
+        let length = postcard::to_slice(&phase, &mut bytes).unwrap().len();
+        assert_eq!(postcard::from_bytes(&bytes[..length]), Ok(phase));
+        let place = bytes.windows(2).position(|pair| pair == b"X2").unwrap();
+        bytes[place] = b'?';
+        assert!(postcard::from_bytes::<Phase>(&bytes[..length]).is_err());
     }
 }

@@ -2,11 +2,12 @@
 
 use crate::path::PlannedPath;
 use nc::Motion;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Path length through all paths that work, counted from where the first beam goes on; without beams, from where the
 /// first such path begins. Before the first beam it is negative, as of the deviations in a seam file.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Along {
     /// Where each of them begins \[mm\].
     begins_mm: BTreeMap<u32, f64>,

@@ -3,6 +3,8 @@
 //! The screen is one more client of [`host_link::control`]: it sends [`host_link::Command`]s and subscribes to events, as the
 //! terminal does, and has no other way to a board. It never delays a job: what it is too slow for is dropped by its subscription.
 //!
+//! - [`drawn`]: what pages draw of a program.
+//! - [`seen`]: all that pages for looking are drawn from.
 //! - [`loaded`]: a program that was read, planned and predicted for a machine, before anything moves.
 //! - [`running`]: its job, on a thread of its own.
 //! - [`live`]: what the screen knows of that job, folded from its events; bounded, however long the job.
@@ -13,10 +15,14 @@
 //! - [`access`]: who may do what.
 //! - [`record`]: what happened, in a file that outlives the screen.
 //! - [`settings`]: how the screen looks, and its PINs, in a file.
+//! - [`viewing`]: a screen that shows what another one serves.
+//! - [`serving`]: what this one serves to viewers.
+//! - `sockets`: what both need.
 //! - [`station`]: what is loaded, the job that runs, and what may be asked of it now.
 //! - [`screen`]: the pages. They read the station and ask it for what the operator wants.
 
 pub mod access;
+pub mod drawn;
 pub mod live;
 pub mod loaded;
 pub mod parameters;
@@ -24,7 +30,11 @@ pub mod record;
 pub mod records;
 pub mod running;
 pub mod screen;
+pub mod seen;
+pub mod serving;
 pub mod settings;
+mod sockets;
 pub mod station;
 pub mod teaching;
 pub mod texts;
+pub mod viewing;

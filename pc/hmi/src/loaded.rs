@@ -1,8 +1,9 @@
 //! What is loaded: a machine, and a program that was read, planned and predicted for it.
 
+use crate::drawn::{Drawn, Listing, PathTime, Place, Way};
 use anyhow::Context;
 use cam::along::Along;
-use cam::dry_run::{self, DryRun};
+use cam::dry_run::{self, PathFigures};
 use cam::path::{Course, PlannedPath, Planner, check_constant_speed};
 use config::machine::MachineFile;
 use config::weld_data::WeldData;
@@ -29,12 +30,10 @@ pub struct Loaded {
     pub machine_file: PathBuf,
     /// Where the program is.
     pub program_file: PathBuf,
-    /// Line that its run begins at, in place of its beginning.
-    pub from_line: Option<u32>,
     /// The program.
     pub program: Program,
-    /// Its text, a line each.
-    pub lines: Vec<String>,
+    /// The same, as it is drawn.
+    pub drawn: Drawn,
     /// The part that its run is judged by.
     pub part: Option<PartFile>,
     /// Where the tool is, by the axes.
@@ -43,30 +42,6 @@ pub struct Loaded {
     pub seam: Option<(PathBuf, Arc<Deviation>)>,
     /// What the interpreter and the planner say of it.
     pub notices: Vec<String>,
-    /// Its run as it is predicted.
-    pub predicted: DryRun,
-    /// The way of the tip on it.
-    pub way: Way,
-}
-
-/// Where the tip goes in a program.
-#[derive(Debug, Default)]
-pub struct Way {
-    /// Path length through all that works; see [`Along`].
-    pub along: Along,
-    /// Places in order.
-    pub places: Vec<Place>,
-}
-
-/// A place of the tip.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// Position and attitude in the frame of the work.
-    pub pose: Pose,
-    /// Path length \[mm\], as [`Along`] counts it; `None` on a way to the work.
-    pub along_mm: Option<f64>,
-    /// Line of the program.
-    pub line: u32,
 }
 
 impl Loaded {
@@ -82,10 +57,7 @@ impl Loaded {
         machine.welding = WeldData::beside(program_file)?;
         let name = program_file.display();
         let text = std::fs::read(program_file).with_context(|| format!("cannot read program {name}"))?;
-        let lines = String::from_utf8_lossy(&text)
-            .lines()
-            .map(str::to_owned)
-            .collect();
+        let listing = Listing::of(&String::from_utf8_lossy(&text));
         let planner = Planner::build(&machine).with_context(|| machine_file.display().to_string())?;
         let program = interpreted(program_file, &machine, &planner)?;
         let part = PartFile::of_program(program_file)?;
@@ -109,50 +81,54 @@ impl Loaded {
             .iter()
             .map(|notice| format!("{}: {}", notice.place, notice.text));
         let notices = said.chain(planner.notices(&program)).collect();
+        let drawn = Drawn {
+            name: file_name(program_file),
+            from_line,
+            listing,
+            way: way(&planner, paths),
+            motion: machine.motion.clone(),
+            is_tracked: machine.tracking.is_some(),
+            deviation_limit_mm: deviation_limit_mm(&machine, part.as_ref()),
+            duration_s: predicted.duration_s,
+            paths: predicted.paths.iter().map(path_time).collect(),
+        };
         Ok(Self {
             machine_file: machine_file.to_owned(),
             program_file: program_file.to_owned(),
-            from_line,
-            lines,
+            drawn,
             part,
             geometry: MachineGeometry::build(&machine.motion)
                 .with_context(|| machine_file.display().to_string())?,
             seam: deviation_beside(program_file)?,
             notices,
-            predicted,
-            way: Way::of(&planner, paths),
             machine,
             program,
         })
     }
+}
 
-    /// The program's name, as people call it.
-    pub fn name(&self) -> String {
-        let name = self.program_file.file_name().unwrap_or_default();
-        name.to_string_lossy().into_owned()
-    }
+/// A program's name, as people call it.
+fn file_name(program: &Path) -> String {
+    program
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
+}
 
-    /// Largest distance of a spot from its seam that the run is judged by \[mm\], if the machine follows seams.
-    pub fn deviation_limit_mm(&self) -> Option<f64> {
-        self.machine.tracking.as_ref()?;
-        let of_part = self.part.as_ref().and_then(PartFile::t_seam);
-        let shipped = SeamLimits::default();
-        Some(of_part.map_or(&shipped, TSeam::limits).deviation_mm())
-    }
+/// Largest distance of a spot from its seam that the run is judged by \[mm\], if the machine follows seams.
+fn deviation_limit_mm(machine: &MachineFile, part: Option<&PartFile>) -> Option<f64> {
+    machine.tracking.as_ref()?;
+    let shipped = SeamLimits::default();
+    let of_part = part.and_then(PartFile::t_seam);
+    Some(of_part.map_or(&shipped, TSeam::limits).deviation_mm())
+}
 
-    /// Where its work begins.
-    pub fn begins_at(&self) -> Option<&Place> {
-        self.way.places.iter().find(|place| place.along_mm.is_some())
-    }
-
-    /// Time from `s_mm` of path `id` on to the end, at the programmed feed \[s\]; of all for a path that is none of the program's.
-    pub fn remaining_s(&self, id: u32, s_mm: f64) -> f64 {
-        let paths = &self.predicted.paths;
-        let Some(path) = (id as usize).checked_sub(1).and_then(|index| paths.get(index)) else {
-            return self.predicted.duration_s;
-        };
-        let share = (s_mm / path.length_mm.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        self.predicted.duration_s - path.start_s - share * path.duration_s
+fn path_time(path: &PathFigures) -> PathTime {
+    PathTime {
+        start_s: path.start_s,
+        duration_s: path.duration_s,
+        length_mm: path.length_mm,
     }
 }
 
@@ -182,37 +158,27 @@ fn deviation_beside(program: &Path) -> anyhow::Result<Option<(PathBuf, Arc<Devia
     Ok(Some((file, deviation)))
 }
 
-impl Way {
-    /// Length along all that works, from where the first beam goes on \[mm\].
-    pub fn work_mm(&self) -> f64 {
-        self.places
-            .iter()
-            .filter_map(|place| place.along_mm)
-            .fold(0.0, f64::max)
-    }
-
-    /// Of `paths` in order, as a job numbers them.
-    fn of(planner: &Planner, paths: Vec<PlannedPath>) -> Self {
-        let paths: BTreeMap<u32, PlannedPath> = (1..).zip(paths).collect();
-        let along = Along::of(&paths);
-        let length: f64 = paths.values().map(PlannedPath::length_mm).sum();
-        let step = length / DRAWN as f64;
-        let mut places = Vec::new();
-        for (id, path) in &paths {
-            let length = path.length_mm();
-            let steps = ((length / step.max(f64::MIN_POSITIVE)).ceil() as usize).clamp(1, DRAWN);
-            let course = path.path();
-            for index in 0..=steps {
-                let s = length * index as f64 / steps as f64;
-                places.extend(pose_at(planner, path.space, &course, s).map(|pose| Place {
-                    pose,
-                    along_mm: along.at(*id, s),
-                    line: path.line_at(s),
-                }));
-            }
+/// Where the tip goes on `paths` in order, as a job numbers them.
+fn way(planner: &Planner, paths: Vec<PlannedPath>) -> Way {
+    let paths: BTreeMap<u32, PlannedPath> = (1..).zip(paths).collect();
+    let along = Along::of(&paths);
+    let length: f64 = paths.values().map(PlannedPath::length_mm).sum();
+    let step = length / DRAWN as f64;
+    let mut places = Vec::new();
+    for (id, path) in &paths {
+        let length = path.length_mm();
+        let steps = ((length / step.max(f64::MIN_POSITIVE)).ceil() as usize).clamp(1, DRAWN);
+        let course = path.path();
+        for index in 0..=steps {
+            let s = length * index as f64 / steps as f64;
+            places.extend(pose_at(planner, path.space, &course, s).map(|pose| Place {
+                pose,
+                along_mm: along.at(*id, s),
+                line: path.line_at(s),
+            }));
         }
-        Self { along, places }
     }
+    Way { along, places }
 }
 
 /// The pose at `s_mm` of a path.

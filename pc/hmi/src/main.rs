@@ -4,11 +4,15 @@ use anyhow::anyhow;
 use clap::Parser;
 use eframe::egui;
 use hmi::running::Place;
-use hmi::screen::Screen;
+use hmi::screen::{Screen, Viewer};
+use hmi::serving::Server;
+use hmi::serving::identity::Identity;
 use hmi::settings::Settings;
 use hmi::station::Station;
 use hmi::texts::Language;
+use hmi::viewing;
 use plant_file::PlantChoice;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use world::BoardChoice;
@@ -20,8 +24,8 @@ struct Arguments {
     /// NC program to load
     program: Option<PathBuf>,
     /// Machine file
-    #[arg(long)]
-    machine: PathBuf,
+    #[arg(long, required_unless_present = "watch")]
+    machine: Option<PathBuf>,
     /// Folder of programs to choose from
     #[arg(long, value_name = "DIR", default_value = "programs")]
     programs: PathBuf,
@@ -48,6 +52,26 @@ struct Arguments {
     /// The whole screen, without a frame
     #[arg(long)]
     fullscreen: bool,
+    /// Serve what the screen shows to viewers at this address, over TLS; the page Screen says the token
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    serve: Option<SocketAddr>,
+    /// Certificate for --serve, in PEM, with those that it is signed by
+    /// [default: one signed by itself, made once and kept beside the settings]
+    #[arg(long, value_name = "FILE", requires_all = ["serve", "key"])]
+    certificate: Option<PathBuf>,
+    /// Its private key, in PEM
+    #[arg(long, value_name = "FILE", requires = "certificate")]
+    key: Option<PathBuf>,
+    /// Watch a screen that is opened with --serve, and command nothing
+    #[arg(long, value_name = "HOST:PORT", requires = "token", conflicts_with_all = ["serve", "machine", "program"])]
+    watch: Option<String>,
+    /// Token of the screen that is watched
+    #[arg(long, env = "SEAMWRIGHT_TOKEN", hide_env_values = true)]
+    token: Option<String>,
+    /// SHA-256 of the certificate of the screen that is watched
+    /// [default: any that an authority which this computer trusts has signed for HOST]
+    #[arg(long, requires = "watch")]
+    fingerprint: Option<String>,
 }
 
 fn pace(text: &str) -> Result<f64, &'static str> {
@@ -78,37 +102,69 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: Arguments) -> anyhow::Result<()> {
-    // What is wrong with it is said before a window opens.
-    config::machine::MachineFile::read(&arguments.machine)?;
+    let file = arguments.settings.clone().or_else(Settings::usual_file);
+    let mut settings = file.map(Settings::read).unwrap_or_default();
+    if let Some(language) = arguments.language {
+        settings.look.language = language;
+    }
+    let fullscreen = arguments.fullscreen;
+    if let Some(address) = arguments.watch {
+        let place = viewing::connection::Place {
+            address,
+            token: arguments.token.unwrap_or_default(),
+            fingerprint: arguments.fingerprint,
+        };
+        return open(fullscreen, move || Box::new(Viewer::new(place, settings)));
+    }
+    // What is wrong is said before a window opens.
+    let machine = arguments.machine.clone().unwrap_or_default();
+    config::machine::MachineFile::read(&machine)?;
+    let server = serve(&arguments, &mut settings)?;
     let place = Place {
         boards: arguments.boards,
         plant: arguments.plant.unwrap_or_default(),
         pace: arguments.pace,
         reports: arguments.reports,
     };
-    let mut station = Station::new(arguments.machine, arguments.programs, place);
+    let mut station = Station::new(machine, arguments.programs, place);
     if let Some(program) = arguments.program {
         station.load(program, None);
     }
-    let file = arguments.settings.or_else(Settings::usual_file);
-    let mut settings = file.map(Settings::read).unwrap_or_default();
-    if let Some(language) = arguments.language {
-        settings.look.language = language;
-    }
+    open(fullscreen, move || {
+        let mut screen = Screen::new(station, settings);
+        if let Some(server) = server {
+            screen.serve(server);
+        }
+        Box::new(screen)
+    })
+}
+
+/// What serves viewers, if that is asked for.
+fn serve(arguments: &Arguments, settings: &mut Settings) -> anyhow::Result<Option<Server>> {
+    let Some(address) = arguments.serve else {
+        return Ok(None);
+    };
+    let identity = match (&arguments.certificate, &arguments.key) {
+        (Some(certificate), Some(key)) => Identity::read(certificate, key)?,
+        _ => Identity::own(settings.folder(), &address.ip().to_string())?,
+    };
+    Server::start(address, &identity, &settings.token()?).map(Some)
+}
+
+/// Opens a window for `app`, until it is closed.
+fn open(fullscreen: bool, app: impl FnOnce() -> Box<dyn eframe::App> + 'static) -> anyhow::Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("Seamwright")
         .with_inner_size([1280.0, 800.0])
         .with_min_inner_size([1280.0, 800.0])
-        .with_fullscreen(arguments.fullscreen);
+        .with_fullscreen(fullscreen);
     let options = eframe::NativeOptions {
         viewport,
         // Graphics by software count every operation a pixel.
         dithering: false,
         ..Default::default()
     };
-    let window = move |_: &eframe::CreationContext| -> Result<Box<dyn eframe::App>, _> {
-        Ok(Box::new(Screen::new(station, settings)))
-    };
+    let window = move |_: &eframe::CreationContext| -> Result<Box<dyn eframe::App>, _> { Ok(app()) };
     eframe::run_native("seamwright", options, Box::new(window))
         .map_err(|error| anyhow!("cannot open a window ({error}); is there a display?"))
 }
@@ -127,5 +183,33 @@ mod tests {
             let told = ["seamwright-hmi", "--machine", "m.toml"].into_iter().chain(wrong);
             assert!(Arguments::try_parse_from(told).is_err(), "{wrong:?}");
         }
+    }
+
+    #[test]
+    fn a_viewer_needs_a_token_and_no_machine_and_neither_serves_nor_runs() {
+        let watch = ["seamwright-hmi", "--watch", "h:1", "--token", "t"];
+        let arguments = Arguments::try_parse_from(watch).unwrap();
+        assert_eq!(
+            (arguments.watch.as_deref(), arguments.machine),
+            (Some("h:1"), None)
+        );
+        for more in [["--serve", "127.0.0.1:1"], ["--machine", "m.toml"]] {
+            let told = watch.into_iter().chain(more);
+            assert!(Arguments::try_parse_from(told).is_err(), "{more:?}");
+        }
+        for wrong in [&["--watch", "h:1"][..], &["--serve", "127.0.0.1:1"], &[]] {
+            let told = ["seamwright-hmi"].into_iter().chain(wrong.iter().copied());
+            assert!(Arguments::try_parse_from(told).is_err(), "{wrong:?}");
+        }
+        let half = [
+            "seamwright-hmi",
+            "--machine",
+            "m.toml",
+            "--serve",
+            "127.0.0.1:1",
+            "--key",
+            "k",
+        ];
+        assert!(Arguments::try_parse_from(half).is_err());
     }
 }

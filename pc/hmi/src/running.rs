@@ -1,6 +1,8 @@
 //! A job, on a thread of its own: of the program that is loaded, or by hand.
 
 use crate::loaded::Loaded;
+use crate::seen::Ended;
+use crate::serving::stage::Stage;
 use anyhow::Context;
 use cam::path::Planner;
 use config::machine::MachineFile;
@@ -91,11 +93,26 @@ pub struct Outcome {
     pub folder: Option<PathBuf>,
 }
 
+impl Outcome {
+    /// The same, as it is told.
+    pub fn ended(&self) -> Ended {
+        Ended {
+            error: self.error.clone(),
+            outside: self.report.as_ref().and_then(report::verdict),
+            report: self.folder.as_ref().map(|folder| folder.display().to_string()),
+        }
+    }
+}
+
 impl Running {
-    /// Begins a job at `place`.
-    pub fn start(task: Task, place: Place) -> Self {
+    /// Begins a job at `place`, which is shown on `stage`.
+    pub fn start(task: Task, place: Place, stage: Option<&Stage>) -> Self {
         let (remote, control) = control();
         let events = remote.subscribe(Interest::Pictures, WAITING);
+        if let Some(stage) = stage {
+            let events = remote.subscribe(Interest::Pictures, WAITING);
+            stage.begin(Some(events), matches!(task, Task::Program { .. }));
+        }
         let own = remote.clone();
         let thread = std::thread::spawn(move || match task {
             Task::Program { loaded, single_block } => {
@@ -192,9 +209,9 @@ fn run_in(
         part: loaded
             .part
             .as_ref()
-            .filter(|part| loaded.from_line.is_none() || part.t_seam().is_some()),
+            .filter(|part| loaded.drawn.from_line.is_none() || part.t_seam().is_some()),
         speed_m_per_min: None,
-        from_line: loaded.from_line,
+        from_line: loaded.drawn.from_line,
         surroundings: surroundings(loaded, place)?.into(),
         spooling: Spooling::in_folder(folder),
         names: names(loaded, place),
@@ -240,7 +257,7 @@ fn names(loaded: &Loaded, place: &Place) -> Names {
         plant => format!(", {plant}"),
     };
     Names {
-        program: match loaded.from_line {
+        program: match loaded.drawn.from_line {
             Some(line) => format!("{program} from line {line}"),
             None => program.to_string(),
         },

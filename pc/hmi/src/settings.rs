@@ -1,6 +1,7 @@
 //! How the screen looks, and its PINs, in a file that outlives it.
 
 use crate::access::{Access, Pins};
+use crate::serving::token::Token;
 use crate::texts::Language;
 use anyhow::Context;
 use config::toml_file::parse;
@@ -51,22 +52,25 @@ struct Content {
     left_handed: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pins: Option<Pins>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    viewers_token: Option<String>,
 }
 
 impl Default for Content {
     fn default() -> Self {
-        Self::of(&Look::default(), None)
+        Self::of(&Look::default(), None, None)
     }
 }
 
 impl Content {
-    fn of(look: &Look, pins: Option<&Pins>) -> Self {
+    fn of(look: &Look, pins: Option<&Pins>, token: Option<&Token>) -> Self {
         Self {
             language: look.language,
             size: Size(look.zoom),
             high_contrast: look.high_contrast,
             left_handed: look.left_handed,
             pins: pins.cloned(),
+            viewers_token: token.map(|token| token.text().to_owned()),
         }
     }
 }
@@ -107,6 +111,8 @@ pub struct Settings {
     pub look: Look,
     /// Who may do what.
     pub access: Access,
+    /// What a viewer has to know, once the screen was served.
+    token: Option<Token>,
     /// Why the file was not read.
     pub unread: Option<String>,
 }
@@ -134,6 +140,8 @@ impl Settings {
                     zoom: content.size.0,
                 },
                 access: Access::new(content.pins),
+                // One that is none is made anew.
+                token: content.viewers_token.as_deref().and_then(Token::read),
                 unread: None,
             },
             Err(error) => Self::unread(&sentence(&error), may_hold_pins(&text)),
@@ -163,6 +171,25 @@ impl Settings {
         Some(folder.join("seamwright").join("hmi.toml"))
     }
 
+    /// The folder that they are in.
+    pub fn folder(&self) -> Option<&Path> {
+        self.file.as_deref().and_then(Path::parent)
+    }
+
+    /// What a viewer has to know; made once, and written.
+    ///
+    /// # Errors
+    /// A sentence: there are no random numbers, or it cannot be written.
+    pub fn token(&mut self) -> anyhow::Result<Token> {
+        if let Some(token) = &self.token {
+            return Ok(token.clone());
+        }
+        let token = Token::random().context("the system gives no random numbers")?;
+        self.token = Some(token.clone());
+        self.write(&self.look, self.access.pins())?;
+        Ok(token)
+    }
+
     /// Writes `look` and `pins`, if there is a file that may be written.
     ///
     /// # Errors
@@ -172,7 +199,7 @@ impl Settings {
             return Ok(());
         };
         let cannot = || format!("cannot write {}", file.display());
-        let content = toml::to_string(&Content::of(look, pins)).with_context(cannot)?;
+        let content = toml::to_string(&Content::of(look, pins, self.token.as_ref())).with_context(cannot)?;
         make_private(file)
             .and_then(|()| kept::replace(file, &format!("{COMMENT}{content}")))
             .with_context(cannot)

@@ -8,6 +8,8 @@ use crate::loaded::Loaded;
 use crate::parameters::Parameters;
 use crate::record::{Earlier, Record, earlier};
 use crate::running::{Machine, Outcome, Place, Running, Task};
+use crate::seen::{Seen, Standing};
+use crate::serving::stage::Stage;
 use anyhow::bail;
 use cam::along::Along;
 use config::sentence;
@@ -83,6 +85,8 @@ pub struct Station {
     access: Access,
     record: Record,
     earlier: Vec<Earlier>,
+    /// What viewers are shown.
+    stage: Option<Stage>,
 }
 
 impl Station {
@@ -106,7 +110,13 @@ impl Station {
             access: Access::default(),
             record,
             earlier,
+            stage: None,
         }
+    }
+
+    /// Has what there is to see shown on `stage` from now on.
+    pub fn show_on(&mut self, stage: Stage) {
+        self.stage = Some(stage);
     }
 
     /// The machine file.
@@ -134,14 +144,30 @@ impl Station {
         self.running.is_some()
     }
 
-    /// Whether the job that runs is that of a program, not one by hand.
-    pub fn runs_program(&self) -> bool {
-        self.is_running() && self.by_hand.is_none()
-    }
-
     /// How the last job ended.
     pub fn last(&self) -> Option<&Outcome> {
         self.last.as_ref()
+    }
+
+    /// What there is to see of it.
+    pub fn seen(&self) -> Seen<'_> {
+        let loaded = self.loaded.as_ref();
+        Seen {
+            live: &self.live,
+            program: loaded.map(|loaded| (&loaded.drawn, loaded.geometry.kinematics())),
+            standing: self.standing(),
+        }
+    }
+
+    fn standing(&self) -> Standing {
+        Standing {
+            is_running: self.running.is_some(),
+            is_by_hand: self.by_hand.is_some(),
+            is_loading: self.loading.is_some(),
+            refused: self.refused.clone(),
+            last: self.last.as_ref().map(Outcome::ended),
+            override_percent: self.override_percent,
+        }
     }
 
     /// Begins to load `program`, to be run from `from_line` on if that is told.
@@ -199,7 +225,7 @@ impl Station {
         let Some(loaded) = self.loaded.clone().filter(|_| self.may(Action::Start, now)) else {
             return;
         };
-        let along = loaded.way.along.clone();
+        let along = loaded.drawn.way.along.clone();
         self.begin_record(along);
         // A job begins at the programmed feed.
         (self.override_percent, self.last) = (100.0, None);
@@ -207,7 +233,7 @@ impl Station {
             loaded,
             single_block: self.single_block,
         };
-        self.running = Some(Running::start(task, self.place.clone()));
+        self.running = Some(Running::start(task, self.place.clone(), self.stage.as_ref()));
     }
 
     /// Homes the machine, to be operated by hand then, if it may.
@@ -221,7 +247,8 @@ impl Station {
                 self.begin_record(along);
                 (self.override_percent, self.last) = (100.0, None);
                 self.by_hand = Some(Arc::clone(&machine));
-                self.running = Some(Running::start(Task::ByHand(machine), self.place.clone()));
+                let task = Task::ByHand(machine);
+                self.running = Some(Running::start(task, self.place.clone(), self.stage.as_ref()));
             }
             Err(error) => self.live.journal.alarm(now, &sentence(error.as_ref())),
         }
@@ -247,7 +274,7 @@ impl Station {
         let journal = &mut self.live.journal;
         journal.written(now, &file.to_string(), &version.to_string(), &written.changes);
         if let Some(loaded) = self.loaded.take() {
-            self.load(loaded.program_file.clone(), loaded.from_line);
+            self.load(loaded.program_file.clone(), loaded.drawn.from_line);
         }
         Ok(())
     }
@@ -303,6 +330,9 @@ impl Station {
             }
         }
         self.guard(now);
+        if let Some(stage) = &self.stage {
+            stage.show(self.standing(), self.loaded.as_ref(), &self.live.journal);
+        }
     }
 
     fn take_loaded(&mut self, loading: JoinHandle<anyhow::Result<Loaded>>) {
@@ -312,7 +342,7 @@ impl Station {
         match read {
             Ok(loaded) => {
                 if self.running.is_none() {
-                    self.begin_record(loaded.way.along.clone());
+                    self.begin_record(loaded.drawn.way.along.clone());
                 }
                 (self.loaded, self.last) = (Some(Arc::new(loaded)), None);
             }
@@ -325,6 +355,9 @@ impl Station {
     fn begin_record(&mut self, along: Along) {
         let journal: Journal = std::mem::take(&mut self.live.journal);
         self.live = Live::new(along, journal);
+        if let Some(stage) = &self.stage {
+            stage.begin(None, true);
+        }
     }
 }
 

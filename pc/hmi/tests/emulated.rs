@@ -1,4 +1,4 @@
-//! A day at the screen on emulated boards, without a window: set up by hand, weld, hold, back, go on. `cargo xtask test` boots what
+//! A day at the screen on emulated boards, without a window, watched by as many viewers as there may be: set up by hand, weld, hold, back, go on. `cargo xtask test` boots what
 //! it needs.
 
 use eframe::egui::{Event, Modifiers, PointerButton, Pos2};
@@ -7,11 +7,17 @@ use egui_kittest::kittest::Queryable;
 use emulator::{Boards, Options, SESSION_VARIABLE, bound_to_parent};
 use hmi::running::Place;
 use hmi::screen::{Page, Screen};
+use hmi::serving::identity::Identity;
+use hmi::serving::token::Token;
+use hmi::serving::{Server, VIEWERS};
 use hmi::settings::Settings;
 use hmi::station::Station;
+use hmi::viewing;
+use hmi::viewing::connection::{Connection, News};
 use host_link::events::Question;
 use plant_file::{DEFAULT_MACHINE, PlantChoice};
 use shared::state::State;
+use std::net::SocketAddr;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use world::BoardChoice;
@@ -43,8 +49,24 @@ fn a_day_at_the_screen_on_emulated_boards() {
     boards.check().unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// The screen, and what is done at it.
-struct Bench(Harness<'static, Screen>);
+/// The screen, what is done at it, and viewers of it with the number of messages that each has taken.
+struct Bench(Harness<'static, Screen>, Vec<(Connection, usize)>);
+
+/// As many viewers of `screen` as there may be.
+fn watched(screen: &mut Screen) -> Vec<(Connection, usize)> {
+    let identity = Identity::own(None, "127.0.0.1").expect("a certificate");
+    let token = Token::random().expect("random numbers");
+    let at = SocketAddr::from(([127, 0, 0, 1], 0));
+    let server = Server::start(at, &identity, &token).expect("it serves");
+    let place = viewing::connection::Place {
+        address: server.told().address.to_string(),
+        token: token.text().to_owned(),
+        fingerprint: Some(identity.fingerprint()),
+    };
+    screen.serve(server);
+    let viewers = (0..VIEWERS).map(|_| Connection::open(place.clone()));
+    viewers.map(|viewer| (viewer, 0)).collect()
+}
 
 impl Bench {
     fn station(&mut self) -> &mut Station {
@@ -78,9 +100,18 @@ impl Bench {
             };
             assert!(Instant::now() < end, "waited too long: {what}; {:#?}", happened());
             self.0.step();
+            self.look();
             std::thread::sleep(FRAME);
         }
         self.0.step();
+    }
+
+    /// Viewers take what has come.
+    fn look(&mut self) {
+        for (viewer, messages) in &mut self.1 {
+            let is_message = |news: &News| matches!(news, News::Message(_));
+            *messages += viewer.news().filter(is_message).count();
+        }
     }
 
     /// Presses or lets go of the pointer there.
@@ -126,11 +157,12 @@ fn the_day() {
         "../../programs".into(),
         place,
     );
-    let screen = Screen::new(station, Settings::default());
+    let mut screen = Screen::new(station, Settings::default());
+    let viewers = watched(&mut screen);
     let harness = Harness::builder()
         .with_size([1280.0, 800.0])
         .build_eframe(|_| screen);
-    let mut bench = Bench(harness);
+    let mut bench = Bench(harness, viewers);
 
     bench.open(Page::SetUp);
     bench.tap("Home…");
@@ -182,4 +214,6 @@ fn the_day() {
         .collect();
     assert_eq!(exceeded, []);
     assert_eq!(report.lost_ticks.total(), 0);
+    let messages: Vec<usize> = bench.1.iter().map(|(_, messages)| *messages).collect();
+    assert!(messages.iter().all(|count| *count > 0), "{messages:?}");
 }

@@ -55,7 +55,7 @@ impl Session<'_> {
         self.question(match wait.until {
             Until::ToolIn(tool) => Question::Tool { tool, line, text },
             Until::Continued | Until::Input { .. } => Question::Stop {
-                code: wait.code,
+                code: wait.code.into(),
                 line,
                 text,
             },

@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn a_stop_says_where_it_is_and_what_to_do() {
         let stop = Question::Stop {
-            code: "M0",
+            code: "M0".into(),
             line: 12,
             text: Some("turn it\u{1b}[2J".to_owned()),
         };

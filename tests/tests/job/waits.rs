@@ -129,7 +129,7 @@ const STOPS: &str = "G0 X450 Y0 Z5\nM64 P3\nM62 P0\nM67 E0 Q1000\nG1 X470 F1000\
 
 fn stop(code: &'static str, line: u32, text: Option<&str>) -> Question {
     Question::Stop {
-        code,
+        code: code.into(),
         line,
         text: text.map(str::to_owned),
     }

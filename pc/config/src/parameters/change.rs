@@ -1,10 +1,11 @@
 //! What differs between two versions of a file.
 
 use super::list;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A value that differs.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Change {
     /// Dotted name of its key.
     pub key: String,

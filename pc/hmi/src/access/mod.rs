@@ -7,6 +7,7 @@ mod pins;
 
 pub use pins::{HashedPin, Pins};
 
+use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// A level that nobody has used for so long falls back to the operator's.
@@ -19,7 +20,7 @@ const FIRST_WAIT: Duration = Duration::from_secs(10);
 const LONGEST_WAIT: Duration = Duration::from_secs(600);
 
 /// What somebody at the screen may do; each level may what those before it may.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Level {
     /// Runs programs.
     #[default]
@@ -46,7 +47,7 @@ impl std::fmt::Display for Level {
 }
 
 /// Something about access that is put on record.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Event {
     /// A PIN has let in.
     Entered(Level),

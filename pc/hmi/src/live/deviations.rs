@@ -3,6 +3,7 @@
 //! On a real machine nobody knows the true seam: this is what the tracker board goes by, the place of the seam in its map minus
 //! that of the slide by its encoder, at the same tick.
 
+use serde::{Deserialize, Serialize};
 use shared::io::{SIDES, SLIDES};
 use shared::protocol::TrackerSample;
 use shared::state::TrackerState;
@@ -44,6 +45,23 @@ impl Bin {
     }
 }
 
+impl SentBin {
+    #[allow(clippy::cast_possible_truncation, reason = "it is drawn")]
+    fn of(bin: &Bin) -> Self {
+        Self {
+            least: bin.least.map(|value| value as f32),
+            largest: bin.largest.map(|value| value as f32),
+        }
+    }
+
+    fn bin(&self) -> Bin {
+        Bin {
+            least: self.least.map(f64::from),
+            largest: self.largest.map(f64::from),
+        }
+    }
+}
+
 /// Deviations with the beam of their side on, by the length along the work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deviations {
@@ -51,6 +69,23 @@ pub struct Deviations {
     bins: Vec<Bin>,
     newest: [Option<f64>; SLIDES],
     worst: [Option<f64>; SLIDES],
+}
+
+/// Deviations that have changed, for who has the others already.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Changed {
+    step_mm: f64,
+    /// Bins that differ, by their number. All that there are, where the step is another.
+    bins: Vec<(u32, SentBin)>,
+    newest: [Option<f64>; SLIDES],
+    worst: [Option<f64>; SLIDES],
+}
+
+/// A bin, to 24 bits of each value: of 1 mm, that is 0.06 nm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct SentBin {
+    least: [f32; SLIDES],
+    largest: [f32; SLIDES],
 }
 
 impl Default for Deviations {
@@ -109,6 +144,41 @@ impl Deviations {
             sum
         });
         self.bins = pairs.collect();
+    }
+
+    /// What has changed since `before`, if anything has.
+    pub(crate) fn since(&self, before: &Self) -> Option<Changed> {
+        let is_same_step = self.step_mm.total_cmp(&before.step_mm).is_eq();
+        let known = if is_same_step { &before.bins[..] } else { &[] };
+        let numbered = (0..).zip(&self.bins);
+        let differs = |(index, bin): &(u32, &Bin)| known.get(*index as usize) != Some(bin);
+        let changed = Changed {
+            step_mm: self.step_mm,
+            bins: numbered
+                .filter(differs)
+                .map(|(index, bin)| (index, SentBin::of(bin)))
+                .collect(),
+            newest: self.newest,
+            worst: self.worst,
+        };
+        (self != before).then_some(changed)
+    }
+
+    /// Takes what has changed; bins beyond those that are kept are none.
+    pub(crate) fn follow(&mut self, changed: &Changed) {
+        if self.step_mm.total_cmp(&changed.step_mm).is_ne() {
+            (self.step_mm, self.bins) = (changed.step_mm, Vec::new());
+        }
+        for (index, bin) in &changed.bins {
+            let index = *index as usize;
+            if index < BINS {
+                if index >= self.bins.len() {
+                    self.bins.resize(index + 1, Bin::EMPTY);
+                }
+                self.bins[index] = bin.bin();
+            }
+        }
+        (self.newest, self.worst) = (changed.newest, changed.worst);
     }
 
     /// All bins with the middle of each \[mm\].

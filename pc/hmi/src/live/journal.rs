@@ -4,6 +4,7 @@ use crate::access::Event;
 use config::parameters::Change;
 use host_link::events::{Phase, Question};
 use job::JobError;
+use serde::{Deserialize, Serialize};
 use shared::protocol::Identity;
 use shared::state::{Fault, TrackerFault};
 use std::collections::VecDeque;
@@ -13,7 +14,7 @@ use std::time::Duration;
 const KEPT: usize = 1000;
 
 /// How much an entry matters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Severity {
     /// To be read back.
     Note,
@@ -24,7 +25,7 @@ pub enum Severity {
 }
 
 /// Something that happened.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// When, by the screen's clock.
     pub at: Duration,
@@ -37,7 +38,7 @@ pub struct Entry {
 }
 
 /// What happened.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum What {
     /// A part of a job began.
     Phase(Phase),
@@ -87,6 +88,10 @@ pub struct Journal {
     entries: VecDeque<Entry>,
     /// Those that nobody has put on record yet.
     unrecorded: VecDeque<Entry>,
+    /// How many there ever were.
+    added: u64,
+    /// How often open alarms were acknowledged.
+    acknowledged: u64,
 }
 
 impl Journal {
@@ -97,12 +102,30 @@ impl Journal {
             what,
             acknowledged: severity < Severity::Alarm,
         };
-        for kept in [&mut self.entries, &mut self.unrecorded] {
-            if kept.len() == KEPT {
-                kept.pop_front();
-            }
-            kept.push_back(entry.clone());
-        }
+        keep(&mut self.unrecorded, entry.clone());
+        self.append(entry);
+    }
+
+    /// An entry that another screen has put on record.
+    pub(crate) fn append(&mut self, entry: Entry) {
+        keep(&mut self.entries, entry);
+        self.added += 1;
+    }
+
+    /// How many entries there ever were.
+    pub(crate) fn added(&self) -> u64 {
+        self.added
+    }
+
+    /// How often open alarms were acknowledged.
+    pub(crate) fn acknowledged(&self) -> u64 {
+        self.acknowledged
+    }
+
+    /// Those that came after the first `added`, as far as they are kept, oldest first.
+    pub(crate) fn since(&self, added: u64) -> impl Iterator<Item = &Entry> {
+        let new = usize::try_from(self.added - added.min(self.added)).unwrap_or(usize::MAX);
+        self.entries.range(self.entries.len().saturating_sub(new)..)
     }
 
     /// What is to be put on record, oldest first; once.
@@ -196,8 +219,17 @@ impl Journal {
 
     /// The operator has taken note of all alarms.
     pub fn acknowledge(&mut self) {
+        let any_is_open = self.open_alarms().next().is_some();
+        self.acknowledged += u64::from(any_is_open);
         self.entries
             .iter_mut()
             .for_each(|entry| entry.acknowledged = true);
     }
+}
+
+fn keep(entries: &mut VecDeque<Entry>, entry: Entry) {
+    if entries.len() == KEPT {
+        entries.pop_front();
+    }
+    entries.push_back(entry);
 }

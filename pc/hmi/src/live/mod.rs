@@ -4,7 +4,7 @@ mod deviations;
 mod journal;
 mod signals;
 
-pub use deviations::{Bin, Deviations};
+pub use deviations::{Bin, Changed, Deviations};
 pub use journal::{Entry, Journal, Severity, What};
 pub use signals::{SIGNALS, Signal, Signals, Unit};
 
@@ -122,6 +122,16 @@ impl Live {
             }
             Event::Progress { .. } | Event::Capture(_) | Event::Measurement { .. } => {}
         }
+    }
+
+    /// When a board was heard last, by the screen's clock.
+    pub(crate) fn heard(&self) -> Option<Duration> {
+        self.heard
+    }
+
+    /// A board was heard last at `heard`, by the screen's clock.
+    pub(crate) fn set_heard(&mut self, heard: Option<Duration>) {
+        self.heard = heard;
     }
 
     /// How long the boards have been silent, where that is too long to trust what is shown; `None` before they were heard.

@@ -152,13 +152,23 @@ impl Signals {
         keep(&mut self.motion, *sample);
     }
 
-    pub(super) fn tracker(&mut self, sample: &TrackerSample) {
+    pub(crate) fn tracker(&mut self, sample: &TrackerSample) {
         keep(&mut self.tracker, *sample);
         if let Some(motion) = self.motion.back() {
             let ahead = sample.time_us as f64 - motion.time_us as f64;
             let known = *self.tracker_ahead_us.get_or_insert(ahead);
             self.tracker_ahead_us = Some(known + SMOOTHING * (ahead - known));
         }
+    }
+
+    /// How far the tracker board's clock is ahead of the motion board's \[µs\], as far as that is known.
+    pub(crate) fn tracker_ahead_us(&self) -> Option<f64> {
+        self.tracker_ahead_us
+    }
+
+    /// See [`Self::tracker_ahead_us`].
+    pub(crate) fn set_tracker_ahead_us(&mut self, ahead_us: Option<f64>) {
+        self.tracker_ahead_us = ahead_us;
     }
 
     /// The tracker board's time by the motion board's clock \[s\], to some milliseconds: by which of their ticks arrive together.
@@ -192,6 +202,18 @@ impl Signals {
             }
         };
         extremes(&all, most)
+    }
+
+    /// The newest `window_s` of both boards, oldest first.
+    pub(crate) fn newest(&self, window_s: f64) -> (Vec<MotionSample>, Vec<TrackerSample>) {
+        (
+            newest(&self.motion, window_s, |sample| sample.time_us)
+                .copied()
+                .collect(),
+            newest(&self.tracker, window_s, |sample| sample.time_us)
+                .copied()
+                .collect(),
+        )
     }
 
     /// Time of the newest tick of the motion board, by its clock \[s\].

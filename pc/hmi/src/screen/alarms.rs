@@ -1,21 +1,32 @@
 //! The page of alarms: what is wrong, and all that happened.
 
 use super::{View, title};
-use crate::live::{Entry, Severity, What};
+use crate::live::{Journal, Severity, What};
+use crate::record::Earlier;
 use crate::station::Station;
 use crate::texts::{Text, Words};
 use eframe::egui::{Button, Color32, Frame, Label, RichText, ScrollArea, Ui};
 
 pub(super) fn show(ui: &mut Ui, view: &View, station: &mut Station) {
+    open(ui, view, &station.live.journal);
+    if station.live.journal.open_alarms().next().is_some() {
+        let acknowledge = RichText::new(view.words.say(Text::Acknowledge)).size(18.0);
+        let acknowledge = Button::new(acknowledge).min_size([160.0, 56.0].into());
+        if ui.add(acknowledge).clicked() {
+            station.live.journal.acknowledge();
+        }
+    }
+    history(ui, view, &station.live.journal, station.earlier());
+}
+
+/// Alarms that nobody has taken note of.
+pub(super) fn open(ui: &mut Ui, view: &View, journal: &Journal) {
     let words = view.words;
-    let journal = &mut station.live.journal;
     ui.heading(words.say(Text::Alarms));
-    let open: Vec<&Entry> = journal.open_alarms().collect();
-    let any = !open.is_empty();
-    if !any {
+    if journal.open_alarms().next().is_none() {
         ui.label(RichText::new(words.say(Text::NoAlarms)).color(view.theme.good));
     }
-    for alarm in open {
+    for alarm in journal.open_alarms() {
         Frame::new()
             .stroke((2.0, view.theme.bad))
             .corner_radius(6)
@@ -26,16 +37,15 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &mut Station) {
                 ui.add(Label::new(text).wrap());
             });
     }
-    if any {
-        let acknowledge = Button::new(RichText::new(words.say(Text::Acknowledge)).size(18.0));
-        if ui.add(acknowledge.min_size([160.0, 56.0].into())).clicked() {
-            journal.acknowledge();
-        }
-    }
+}
+
+/// All that happened, and what is on record of before.
+pub(super) fn history(ui: &mut Ui, view: &View, journal: &Journal, earlier: &[Earlier]) {
+    let words = view.words;
     ui.add_space(16.0);
     ui.heading(words.say(Text::History));
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        for entry in station.live.journal.entries().rev() {
+        for entry in journal.entries().rev() {
             let seconds = entry.at.as_secs();
             let time = format!(
                 "{:02}:{:02}:{:02}",
@@ -46,11 +56,11 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &mut Station) {
             let colour = colour(ui, view, entry.severity);
             line(ui, view, &time, &said(words, &entry.what), colour);
         }
-        if !station.earlier().is_empty() {
+        if !earlier.is_empty() {
             ui.add_space(8.0);
             title(ui, view, words.say(Text::EarlierHistory));
         }
-        for entry in station.earlier().iter().rev() {
+        for entry in earlier.iter().rev() {
             let colour = colour(ui, view, entry.severity);
             // Without the offset of the zone; the file has it.
             let time = entry.time.get(..19).unwrap_or(&entry.time).replace('T', " ");

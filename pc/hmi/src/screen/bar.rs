@@ -2,7 +2,8 @@
 
 use super::View;
 use super::alarms::said;
-use crate::station::{Action, Station};
+use crate::seen::Seen;
+use crate::station::Station;
 use crate::texts::Text;
 use eframe::egui::{Align, Button, Color32, Direction, Frame, Label, Layout, RichText, Ui, UiBuilder};
 use host_link::Command;
@@ -30,8 +31,9 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &mut Station, left_handed:
             .max_rect(rest.shrink(4.0))
             .layout(Layout::left_to_right(Align::Center)),
         |ui| {
-            state(ui, view, station);
-            told(ui, view, station);
+            let seen = station.seen();
+            state(ui, view, &seen);
+            told(ui, view, &seen);
         },
     );
 }
@@ -53,9 +55,9 @@ fn stop_button(ui: &mut Ui, view: &View, station: &mut Station) {
 }
 
 /// State of the machine, as the board says it, and its age if that is old.
-fn state(ui: &mut Ui, view: &View, station: &Station) {
-    let live = &station.live;
-    let state = live.state().filter(|_| station.is_running());
+pub(super) fn state(ui: &mut Ui, view: &View, seen: &Seen) {
+    let live = seen.live;
+    let state = live.state().filter(|_| seen.standing.is_running);
     let (text, fill) = match state {
         None => (view.words.say(Text::NoJob), view.theme.card),
         Some(state) => {
@@ -80,7 +82,7 @@ fn state(ui: &mut Ui, view: &View, station: &Station) {
         .show(ui, |ui| {
             ui.add(Label::new(RichText::new(text).size(20.0).strong().color(letters)).extend());
         });
-    if live.beam_is_on() && station.is_running() {
+    if live.beam_is_on() && seen.standing.is_running {
         Frame::new()
             .fill(view.theme.beam)
             .corner_radius(6)
@@ -96,11 +98,10 @@ fn state(ui: &mut Ui, view: &View, station: &Station) {
 }
 
 /// What the machine does, or waits for, or what is wrong; the most urgent alone.
-fn told(ui: &mut Ui, view: &View, station: &Station) {
-    let live = &station.live;
+pub(super) fn told(ui: &mut Ui, view: &View, seen: &Seen) {
+    let live = seen.live;
     let words = view.words;
-    let running = station.may(Action::Stop, view.now);
-    let (text, colour) = if let Some(silent) = live.silent_for(view.now).filter(|_| running) {
+    let (text, colour) = if let Some(silent) = live.silent_for(view.now).filter(|_| seen.goes_on()) {
         (
             words.with(Text::Silent, &[&format!("{:.1}", silent.as_secs_f64())]),
             view.theme.bad,
@@ -109,9 +110,9 @@ fn told(ui: &mut Ui, view: &View, station: &Station) {
         (words.question(question), view.theme.doubt)
     } else if let Some(alarm) = live.journal.open_alarms().next_back() {
         (said(words, &alarm.what), view.theme.bad)
-    } else if station.is_loading() {
+    } else if seen.standing.is_loading {
         (words.say(Text::Loading).to_owned(), view.theme.faint)
-    } else if station.is_running() {
+    } else if seen.standing.is_running {
         let phase = live.phase.map(|phase| words.phase(phase));
         (
             phase.unwrap_or_else(|| words.say(Text::NotConnected).to_owned()),

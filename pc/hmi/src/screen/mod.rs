@@ -5,6 +5,7 @@ mod alarms;
 mod bar;
 mod jog;
 mod levels;
+mod pages;
 mod parameters;
 mod plot;
 mod run;
@@ -12,15 +13,19 @@ mod set_up;
 mod settings;
 mod teach;
 mod theme;
+mod viewer;
 mod welds;
 
 pub use crate::settings::Look;
+pub use pages::Page;
+pub use viewer::Viewer;
 
 use crate::access::Pins;
+use crate::serving::Server;
 use crate::settings::Settings;
 use crate::station::{Action, Station};
 use crate::texts::{Text, Words};
-use eframe::egui::{self, Key, Modifiers, Response, RichText, TextWrapMode, Ui, Visuals};
+use eframe::egui::{self, Key, Modifiers, Response, RichText, Ui, Visuals};
 use host_link::Command;
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -34,56 +39,6 @@ const IDLE: Duration = Duration::from_millis(250);
 const BAR: f32 = 76.0;
 /// Width of the list of pages \[points\].
 const RAIL: f32 = 124.0;
-
-/// A page.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Page {
-    /// The job.
-    #[default]
-    Run,
-    /// Setting up the machine.
-    SetUp,
-    /// Teaching places of the tip.
-    Teach,
-    /// Signals of the boards over time.
-    Plot,
-    /// What went wrong, and what happened.
-    Alarms,
-    /// Past jobs.
-    Welds,
-    /// The machine file.
-    Parameters,
-    /// The screen itself.
-    Settings,
-}
-
-impl Page {
-    /// All pages, in the order of their keys.
-    pub const ALL: [Self; 8] = [
-        Self::Run,
-        Self::SetUp,
-        Self::Teach,
-        Self::Plot,
-        Self::Alarms,
-        Self::Welds,
-        Self::Parameters,
-        Self::Settings,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> Text {
-        match self {
-            Self::Run => Text::Run,
-            Self::SetUp => Text::SetUp,
-            Self::Teach => Text::Teach,
-            Self::Plot => Text::LivePlot,
-            Self::Alarms => Text::Alarms,
-            Self::Welds => Text::Welds,
-            Self::Parameters => Text::Parameters,
-            Self::Settings => Text::Settings,
-        }
-    }
-}
 
 /// The screen.
 pub struct Screen {
@@ -107,6 +62,7 @@ pub struct Screen {
     settings: Settings,
     /// What is in the settings, or could not be written there.
     kept: (Look, Option<Pins>),
+    server: Option<Server>,
     clock: Box<dyn Fn() -> Duration>,
 }
 
@@ -117,6 +73,23 @@ struct View<'a> {
     now: Duration,
     /// A PIN is asked for.
     asks: Cell<Option<access::Purpose>>,
+    /// What is said where no program is loaded.
+    no_program: Text,
+}
+
+impl<'a> View<'a> {
+    /// By the `look` of the screen, which `ui` takes on.
+    fn of(ui: &Ui, look: &Look, theme: &'a Theme, now: Duration) -> Self {
+        theme.apply(ui.ctx());
+        ui.ctx().set_zoom_factor(look.zoom);
+        Self {
+            words: Words(look.language),
+            theme,
+            now,
+            asks: Cell::new(None),
+            no_program: Text::NoProgram,
+        }
+    }
 }
 
 impl Screen {
@@ -153,8 +126,15 @@ impl Screen {
             pad: None,
             settings,
             kept,
+            server: None,
             clock: Box::new(clock),
         }
+    }
+
+    /// Has `server` show what this screen does.
+    pub fn serve(&mut self, server: Server) {
+        self.station.show_on(server.stage());
+        self.server = Some(server);
     }
 
     /// Takes what has happened, and asks to be drawn again in time.
@@ -170,14 +150,7 @@ impl Screen {
     /// Draws everything, and does what is asked for.
     fn show(&mut self, ui: &mut Ui) {
         let theme = Theme::of(&self.look);
-        theme.apply(ui.ctx());
-        ui.ctx().set_zoom_factor(self.look.zoom);
-        let view = View {
-            words: Words(self.look.language),
-            theme: &theme,
-            now: self.now(),
-            asks: Cell::new(None),
-        };
+        let view = View::of(ui, &self.look, &theme, self.now());
         if ui.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) {
             self.station.touch(view.now);
         }
@@ -199,8 +172,8 @@ impl Screen {
                 Page::SetUp => self.set_up.show(ui, &view, &mut self.station, &mut self.panel),
                 Page::Teach => self.teach.show(ui, &view, &mut self.station, &mut self.panel),
                 Page::Plot => {
-                    self.plot
-                        .show(ui, &view, &self.station.live.signals, &self.station.place.reports);
+                    let folder = Some(self.station.place.reports.as_path());
+                    self.plot.show(ui, &view, &self.station.live.signals, folder);
                 }
                 Page::Welds => self.welds.show(ui, &view, &self.station.place.reports),
                 Page::Parameters => {
@@ -211,7 +184,9 @@ impl Screen {
                 Page::Settings => {
                     // Everything larger is higher than a panel.
                     scroll().show(ui, |ui| {
-                        settings::show(ui, &view, &mut self.look, &mut self.station, &mut self.refused);
+                        let (look, station) = (&mut self.look, &mut self.station);
+                        let server = self.server.as_ref();
+                        settings::show(ui, &view, look, station, &mut self.refused, server);
                     });
                 }
             });
@@ -269,18 +244,9 @@ impl Screen {
 
     fn rail(&mut self, ui: &mut Ui, view: &View) {
         ui.add_space(8.0);
-        for page in Page::ALL {
-            let open = self.station.live.journal.open_alarms().count();
-            let mut name = view.words.say(page.name()).to_owned();
-            if page == Page::Alarms && open > 0 {
-                name.push_str(&format!(" ({open})"));
-            }
-            let text = RichText::new(name).size(16.0);
-            let button = egui::Button::selectable(self.page == page, text).wrap_mode(TextWrapMode::Extend);
-            let button = button.min_size([RAIL - 16.0, 56.0].into());
-            if ui.add(button).clicked() {
-                self.open(page);
-            }
+        let open = self.station.live.journal.open_alarms().count();
+        if let Some(page) = pages::rail(ui, view, &Page::ALL, self.page, open) {
+            self.open(page);
         }
     }
 
@@ -298,24 +264,8 @@ impl Screen {
         if pressed(Key::F2) && self.station.may(Action::Hold, now) {
             self.station.send(Command::Hold, now);
         }
-        let numbers = [
-            Key::Num1,
-            Key::Num2,
-            Key::Num3,
-            Key::Num4,
-            Key::Num5,
-            Key::Num6,
-            Key::Num7,
-            Key::Num8,
-            Key::Num9,
-        ];
-        for (key, page) in numbers.into_iter().zip(Page::ALL) {
-            if ui
-                .ctx()
-                .input_mut(|input| input.consume_key(Modifiers::CTRL, key))
-            {
-                self.open(page);
-            }
+        if let Some(page) = pages::by_key(ui, &Page::ALL) {
+            self.open(page);
         }
     }
 }

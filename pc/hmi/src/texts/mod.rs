@@ -128,6 +128,7 @@ texts! {
     Load: "Load…", "载入…", "Laden…";
     Loading: "Reading, planning and predicting…", "正在读取、规划并预测…", "Lesen, planen, vorhersagen…";
     NoProgram: "No program is loaded. Load one to begin.", "未载入程序。请先载入程序。", "Kein Programm geladen. Zum Beginnen eines laden.";
+    NoProgramThere: "No program is loaded.", "未载入程序。", "Kein Programm geladen.";
     ChooseProgram: "Programs in {}", "{} 中的程序", "Programme in {}";
     NoPrograms: "There are no programs in this folder.", "此文件夹中没有程序。", "In diesem Ordner sind keine Programme.";
     Cancel: "Cancel", "取消", "Abbrechen";
@@ -299,6 +300,19 @@ texts! {
     Boards: "Boards", "控制板", "Karten";
     Keys: "Keys: F1 or Esc stops, F2 holds, Tab and Enter reach every button, Ctrl and a digit the pages", "按键：F1 或 Esc 停止，F2 保持，Tab 与回车可操作所有按钮，Ctrl+数字键切换页面", "Tasten: F1 oder Esc stoppt, F2 hält an, Tab und Enter erreichen jede Taste, Strg und eine Ziffer die Seiten";
     Version: "Version {}", "版本 {}", "Version {}";
+    // Viewers
+    Served: "Viewers", "观看者", "Zuschauer";
+    ServedAt: "Address", "地址", "Adresse";
+    ServedToken: "Token", "令牌", "Token";
+    ServedFingerprint: "Certificate, SHA-256", "证书 SHA-256", "Zertifikat, SHA-256";
+    ServedTo: "{} of {} watch", "正在观看：{}/{}", "{} von {} sehen zu";
+    NotServed: "nobody can watch: opened without --serve", "无法观看：启动时未用 --serve", "niemand kann zusehen: ohne --serve geöffnet";
+    Watching: "WATCHING", "仅观看", "NUR ANSICHT";
+    WatchingHint: "This screen shows {} and commands nothing. Stop is at the machine.", "此屏幕仅显示 {}，不能操作。停止按钮在机器旁。", "Diese Anzeige zeigt {} und bedient nichts. Stopp ist an der Maschine.";
+    NoConnection: "No connection: {}", "无连接：{}", "Keine Verbindung: {}";
+    Connecting: "Connecting to {}…", "正在连接 {}…", "Verbindung zu {}…";
+    ShownIsOld: "What is shown is {} s old", "显示内容已过时 {} 秒", "Das Gezeigte ist {} s alt";
+    WatchingKeys: "Keys: Tab and Enter reach every button, Ctrl and a digit the pages", "按键：Tab 与回车可操作所有按钮，Ctrl+数字键切换页面", "Tasten: Tab und Enter erreichen jede Taste, Strg und eine Ziffer die Seiten";
     // Access
     Operator: "operator", "操作员", "Bediener";
     Setter: "setter", "调机员", "Einrichter";

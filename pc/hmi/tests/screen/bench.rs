@@ -90,14 +90,7 @@ impl Bench {
         let (ahead, began) = (Rc::new(Cell::new(Duration::ZERO)), Instant::now());
         let later = Rc::clone(&ahead);
         let screen = Screen::by_clock(station, settings, move || began.elapsed() + later.get());
-        let harness = Harness::builder()
-            .with_size(SIZE)
-            .wgpu()
-            .with_context_setup(|ctx| {
-                let fonts = egui_system_font_provider::SystemFontProvider::new();
-                ctx.add_font_provider(Arc::new(fonts.with_locale(Some("zh-Hans"))));
-            })
-            .build_eframe(|_| screen);
+        let harness = drawn(screen);
         Self {
             harness,
             folder,
@@ -196,27 +189,6 @@ impl Bench {
         self.harness.run_steps(2);
     }
 
-    /// The screen as it is, on its ground. Drawing it is given up by the library after some seconds, which a busy computer may take.
-    fn picture(&mut self) -> image::RgbImage {
-        let mut tries = 0..TRIES;
-        let drawn = loop {
-            match self.harness.render() {
-                Ok(picture) => break picture,
-                Err(error) => assert!(tries.next().is_some(), "no picture: {error}"),
-            }
-        };
-        let [red, green, blue, _] = self.harness.ctx.global_style().visuals.panel_fill.to_array();
-        image::RgbImage::from_fn(drawn.width(), drawn.height(), |x, y| {
-            let [r, g, b, alpha] = drawn.get_pixel(x, y).0;
-            // Colours are multiplied by alpha already.
-            let on = |colour: u8, ground: u8| {
-                let below = u16::from(ground) * (255 - u16::from(alpha)) / 255;
-                u8::try_from(u16::from(colour) + below).unwrap_or(u8::MAX)
-            };
-            image::Rgb([on(r, red), on(g, green), on(b, blue)])
-        })
-    }
-
     /// Pictures called `name` in all languages, of what `open` brings in sight.
     pub fn pictures(&mut self, name: &str, open: impl FnOnce(&mut Self)) {
         self.pictures_in(name, &Language::ALL, open);
@@ -228,13 +200,50 @@ impl Bench {
             self.harness.state_mut().look.language = *language;
             // Sizes settle in the frame after the text has changed.
             self.harness.run_steps(3);
-            let picture = self.picture();
-            let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hmi");
-            std::fs::create_dir_all(&folder).expect("a folder");
-            let file = folder.join(format!("{name}-{}.png", language.tag()));
-            picture.save(file).expect("written");
+            keep_picture(&mut self.harness, &format!("{name}-{}", language.tag()));
         }
         self.harness.state_mut().look.language = Language::English;
         self.harness.run_steps(2);
     }
+}
+
+/// `app`, drawn without a window.
+pub fn drawn<A: eframe::App + 'static>(app: A) -> Harness<'static, A> {
+    Harness::builder()
+        .with_size(SIZE)
+        .wgpu()
+        .with_context_setup(|ctx| {
+            let fonts = egui_system_font_provider::SystemFontProvider::new();
+            ctx.add_font_provider(Arc::new(fonts.with_locale(Some("zh-Hans"))));
+        })
+        .build_eframe(|_| app)
+}
+
+/// Writes what `harness` shows into a file called `name`.
+pub fn keep_picture<A>(harness: &mut Harness<'_, A>, name: &str) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hmi");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let file = folder.join(format!("{name}.png"));
+    picture(harness).save(file).expect("written");
+}
+
+/// The screen as it is, on its ground. Drawing it is given up by the library after some seconds, which a busy computer may take.
+fn picture<A>(harness: &mut Harness<'_, A>) -> image::RgbImage {
+    let mut tries = 0..TRIES;
+    let drawn = loop {
+        match harness.render() {
+            Ok(picture) => break picture,
+            Err(error) => assert!(tries.next().is_some(), "no picture: {error}"),
+        }
+    };
+    let [red, green, blue, _] = harness.ctx.global_style().visuals.panel_fill.to_array();
+    image::RgbImage::from_fn(drawn.width(), drawn.height(), |x, y| {
+        let [r, g, b, alpha] = drawn.get_pixel(x, y).0;
+        // Colours are multiplied by alpha already.
+        let on = |colour: u8, ground: u8| {
+            let below = u16::from(ground) * (255 - u16::from(alpha)) / 255;
+            u8::try_from(u16::from(colour) + below).unwrap_or(u8::MAX)
+        };
+        image::Rgb([on(r, red), on(g, green), on(b, blue)])
+    })
 }

@@ -101,7 +101,7 @@ fn a_job_begins_at_the_line_that_was_tapped_or_says_at_once_why_not() {
     bench.until("it is loaded", |station| !station.is_loading());
     assert_eq!(bench.station().refused(), None);
     assert_eq!(
-        bench.station().loaded().and_then(|loaded| loaded.from_line),
+        bench.station().loaded().and_then(|loaded| loaded.drawn.from_line),
         Some(14)
     );
     bench.tap("Start…");

@@ -7,6 +7,8 @@ mod parameters;
 mod pictures;
 mod set_up;
 mod teach;
+mod viewers;
+mod watching;
 mod whole_day;
 #[cfg(target_os = "linux")]
 mod window;

@@ -68,7 +68,7 @@ impl PlotPage {
         }
     }
 
-    pub fn show(&mut self, ui: &mut Ui, view: &View, signals: &Signals, folder: &Path) {
+    pub fn show(&mut self, ui: &mut Ui, view: &View, signals: &Signals, folder: Option<&Path>) {
         bare(egui::Panel::left("signals"))
             .exact_size(LIST)
             .resizable(false)
@@ -109,7 +109,7 @@ impl PlotPage {
         Some(COLOURS[place])
     }
 
-    fn buttons(&mut self, ui: &mut Ui, view: &View, signals: &Signals, folder: &Path) {
+    fn buttons(&mut self, ui: &mut Ui, view: &View, signals: &Signals, folder: Option<&Path>) {
         let words = view.words;
         ui.horizontal_wrapped(|ui| {
             ui.label(words.say(Text::Window));
@@ -122,6 +122,8 @@ impl PlotPage {
             if ui.toggle_value(&mut frozen, words.say(Text::Freeze)).changed() {
                 (self.frozen, self.cursors) = (frozen.then(|| Arc::new(signals.clone())), [None; 2]);
             }
+            // A viewer has not every tick.
+            let Some(folder) = folder else { return };
             if ui
                 .add_enabled(!signals.is_empty(), Button::new(words.say(Text::Export)))
                 .clicked()

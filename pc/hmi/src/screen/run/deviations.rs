@@ -3,7 +3,7 @@
 use super::title;
 use crate::live::Deviations;
 use crate::screen::View;
-use crate::station::Station;
+use crate::seen::Seen;
 use crate::texts::Text;
 use eframe::egui::{RichText, Ui};
 use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoints, uniform_grid_spacer};
@@ -12,10 +12,10 @@ use shared::io::{SLIDE_NAMES, SLIDES};
 /// mm to µm.
 const UM: f64 = 1e3;
 
-pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
+pub(super) fn show(ui: &mut Ui, view: &View, seen: &Seen) {
     title(ui, view, view.words.say(Text::Deviation));
-    let deviations = &station.live.deviations;
-    let limit = station.loaded().and_then(|loaded| loaded.deviation_limit_mm());
+    let deviations = &seen.live.deviations;
+    let limit = seen.program.and_then(|(drawn, _)| drawn.deviation_limit_mm);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.spacing_mut().interact_size.y = 18.0;
@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
         }
     });
     let reach = limit.unwrap_or(0.05) * UM;
-    let length = station.loaded().map_or(100.0, |loaded| loaded.way.work_mm());
+    let length = seen.program.map_or(100.0, |(drawn, _)| drawn.way.work_mm());
     Plot::new("deviations")
         .allow_drag(false)
         .allow_zoom(false)

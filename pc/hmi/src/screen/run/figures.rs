@@ -1,34 +1,34 @@
 //! Speed, power, place and time of the job, in large letters, and how the last one ended.
 
 use super::card;
+use crate::drawn::Drawn;
 use crate::live::Live;
-use crate::loaded::Loaded;
-use crate::running::Outcome;
 use crate::screen::View;
-use crate::station::Station;
+use crate::seen::{Ended, Seen};
 use crate::texts::Text;
 use eframe::egui::{Label, RichText, Ui};
 use shared::units::MM_S_PER_M_MIN;
 
-pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
-    let Some(loaded) = station.loaded() else {
-        let text = match station.refused() {
+pub(super) fn show(ui: &mut Ui, view: &View, seen: &Seen) {
+    let standing = &seen.standing;
+    let Some((drawn, _)) = seen.program else {
+        let text = match &standing.refused {
             Some(reason) => {
                 RichText::new(format!("{}: {reason}", view.words.say(Text::WrongFile))).color(view.theme.bad)
             }
-            None => RichText::new(view.words.say(Text::NoProgram)).size(18.0),
+            None => RichText::new(view.words.say(view.no_program)).size(18.0),
         };
         ui.add(Label::new(text).wrap());
         return;
     };
-    if let Some(reason) = station.refused() {
+    if let Some(reason) = &standing.refused {
         let text = format!("{}: {reason}", view.words.say(Text::WrongFile));
         ui.add(Label::new(RichText::new(text).color(view.theme.bad)).wrap());
-    } else if let Some(last) = station.last() {
+    } else if let Some(last) = &standing.last {
         ended(ui, view, last);
     } else {
         ui.columns_const(|columns: &mut [Ui; 5]| {
-            for (ui, (text, value)) in columns.iter_mut().zip(told(station, loaded)) {
+            for (ui, (text, value)) in columns.iter_mut().zip(told(seen, drawn)) {
                 figure(ui, view, text, &value);
             }
         });
@@ -36,8 +36,8 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
 }
 
 /// The figures of now.
-fn told(station: &Station, loaded: &Loaded) -> [(Text, String); 5] {
-    let live = &station.live;
+fn told(seen: &Seen, drawn: &Drawn) -> [(Text, String); 5] {
+    let live = seen.live;
     let none = || "–".to_owned();
     let speed = live
         .newest
@@ -48,16 +48,16 @@ fn told(station: &Station, loaded: &Loaded) -> [(Text, String); 5] {
         .as_ref()
         .filter(|motion| motion.line > 0)
         .map(|motion| motion.line.to_string());
-    let (time, seconds) = match live.place().filter(|_| station.runs_program()) {
+    let (time, seconds) = match live.place().filter(|_| seen.runs_program()) {
         Some((path, s_mm)) => (
             Text::Remaining,
-            loaded.remaining_s(path, s_mm) / (station.override_percent / 100.0).max(0.01),
+            drawn.remaining_s(path, s_mm) / (seen.standing.override_percent / 100.0).max(0.01),
         ),
-        None => (Text::Predicted, loaded.predicted.duration_s),
+        None => (Text::Predicted, drawn.duration_s),
     };
     [
         (Text::Speed, speed.unwrap_or_else(none)),
-        (Text::Power, power(live, loaded).unwrap_or_else(none)),
+        (Text::Power, power(live, drawn).unwrap_or_else(none)),
         (Text::Along, along.unwrap_or_else(none)),
         (Text::Line, line.unwrap_or_else(none)),
         (
@@ -72,15 +72,9 @@ fn told(station: &Station, loaded: &Loaded) -> [(Text, String); 5] {
 }
 
 /// Power of the beams that are on \[W\].
-fn power(live: &Live, loaded: &Loaded) -> Option<String> {
+fn power(live: &Live, drawn: &Drawn) -> Option<String> {
     let newest = live.newest?;
-    let beams = loaded
-        .machine
-        .motion
-        .beams
-        .iter()
-        .zip(newest.beams)
-        .zip(newest.levels);
+    let beams = drawn.motion.beams.iter().zip(newest.beams).zip(newest.levels);
     let watts = beams.filter_map(|((beam, on), level)| {
         let full = beam.as_ref()?.power_at_10v_w;
         Some(if on {
@@ -107,11 +101,10 @@ fn figure(ui: &mut Ui, view: &View, text: Text, value: &str) {
 }
 
 /// How the last job ended.
-fn ended(ui: &mut Ui, view: &View, last: &Outcome) {
-    let verdict = last.report.as_ref().and_then(report::verdict);
-    let (text, colour, more) = match (&last.error, verdict) {
+fn ended(ui: &mut Ui, view: &View, last: &Ended) {
+    let (text, colour, more) = match (&last.error, &last.outside) {
         (Some(error), _) => (Text::EndedEarly, view.theme.bad, Some(error.clone())),
-        (None, Some(outside)) => (Text::FinishedOutside, view.theme.bad, Some(outside)),
+        (None, Some(outside)) => (Text::FinishedOutside, view.theme.bad, Some(outside.clone())),
         (None, None) => (Text::Finished, view.theme.good, None),
     };
     ui.vertical(|ui| {
@@ -122,8 +115,8 @@ fn ended(ui: &mut Ui, view: &View, last: &Outcome) {
                 .strong()
                 .color(colour),
         );
-        let folder = last.folder.as_ref();
-        let report = folder.map(|folder| view.words.with(Text::ReportIn, &[&folder.display().to_string()]));
+        let report = last.report.as_ref();
+        let report = report.map(|folder| view.words.with(Text::ReportIn, &[folder]));
         let more: Vec<String> = more.into_iter().chain(report).collect();
         ui.add(Label::new(more.join(" · ")).wrap());
     });

@@ -77,7 +77,7 @@ pub(super) fn start(ui: &mut Ui, view: &View, station: &mut Station, over: &mut 
         *over = Over::Nothing;
         return;
     };
-    let from = match loaded.from_line {
+    let from = match loaded.drawn.from_line {
         Some(line) => words.with(Text::FromLine, &[&line.to_string()]),
         None => words.say(Text::FromBeginning).to_owned(),
     };
@@ -86,7 +86,7 @@ pub(super) fn start(ui: &mut Ui, view: &View, station: &mut Station, over: &mut 
         ui.heading(words.say(Text::StartTitle));
         ui.add_space(8.0);
         ui.label(
-            RichText::new(format!("{}, {from}", loaded.name()))
+            RichText::new(format!("{}, {from}", loaded.drawn.name))
                 .size(19.0)
                 .strong(),
         );
@@ -95,7 +95,7 @@ pub(super) fn start(ui: &mut Ui, view: &View, station: &mut Station, over: &mut 
             loaded.machine.name,
             station.place.boards.name()
         ));
-        if let Some(place) = loaded.begins_at() {
+        if let Some(place) = loaded.drawn.begins_at() {
             let [x, y, z] = place.pose.position.into();
             let there = format!("X {x:.1}  Y {y:.1}  Z {z:.1} mm");
             ui.label(words.with(Text::FirstMove, &[&there]));

@@ -10,9 +10,11 @@ mod way;
 
 use super::{View, bare, nothing, title};
 
-use crate::station::Station;
+use crate::seen::Seen;
+use crate::station::{Action, Station};
 pub(super) use deviations::line;
 use eframe::egui::{self, Frame, Ui};
+use std::time::Duration;
 
 /// Width of the controls \[points\].
 const CONTROLS: f32 = 216.0;
@@ -26,9 +28,15 @@ const UPPER: f32 = 0.53;
 /// What the page remembers between two frames.
 #[derive(Default)]
 pub(super) struct RunPage {
+    sight: Sight,
+    over: Over,
+}
+
+/// The same, of what is only looked at.
+#[derive(Default)]
+pub(super) struct Sight {
     way: way::Standpoint,
     cameras: cameras::Textures,
-    over: Over,
 }
 
 /// What is open over the page.
@@ -52,13 +60,34 @@ impl RunPage {
         controls.exact_size(CONTROLS).resizable(false).show(ui, |ui| {
             controls::show(ui, view, station, &mut self.over);
         });
+        if let Some(line) = self.sight.show(ui, view, &station.seen()) {
+            begin_at(station, line, view.now);
+        }
+        match self.over {
+            Over::Nothing => {}
+            Over::Programs => loading::programs(ui, view, station, &mut self.over),
+            Over::Start => loading::start(ui, view, station, &mut self.over),
+        }
+    }
+}
+
+/// Has the program begin at `line`, or at its beginning again, where nothing runs.
+fn begin_at(station: &mut Station, line: u32, now: Duration) {
+    let Some(loaded) = station.loaded().filter(|_| station.may(Action::Start, now)) else {
+        return;
+    };
+    let again = loaded.drawn.from_line == Some(line);
+    let program = loaded.program_file.clone();
+    station.load(program, (!again).then_some(line));
+}
+
+impl Sight {
+    /// Shows everything but the controls; a line of the program that is tapped, from 1.
+    pub fn show(&mut self, ui: &mut Ui, view: &View, seen: &Seen) -> Option<u32> {
         bare(egui::Panel::top("figures"))
             .exact_size(FIGURES)
-            .show(ui, |ui| figures::show(ui, view, station));
-        let tracked = station
-            .loaded()
-            .is_some_and(|loaded| loaded.machine.tracking.is_some());
-        if tracked {
+            .show(ui, |ui| figures::show(ui, view, seen));
+        if seen.program.is_some_and(|(drawn, _)| drawn.is_tracked) {
             let height = ui.available_height() * (1.0 - UPPER);
             bare(egui::Panel::bottom("seam"))
                 .exact_size(height)
@@ -67,25 +96,20 @@ impl RunPage {
                         .exact_size(height * 1.5)
                         .resizable(false)
                         .show(ui, |ui| {
-                            self.cameras.show(ui, view, &station.live);
+                            self.cameras.show(ui, view, seen.live);
                         });
-                    deviations::show(ui, view, station);
+                    deviations::show(ui, view, seen);
                 });
         }
-        bare(egui::Panel::left("program"))
+        let tapped = bare(egui::Panel::left("program"))
             .exact_size(PROGRAM)
             .resizable(false)
-            .show(ui, |ui| {
-                program::show(ui, view, station);
-            });
+            .show(ui, |ui| program::show(ui, view, seen))
+            .inner;
         Frame::new()
             .inner_margin(8)
-            .show(ui, |ui| self.way.show(ui, view, station));
-        match self.over {
-            Over::Nothing => {}
-            Over::Programs => loading::programs(ui, view, station, &mut self.over),
-            Over::Start => loading::start(ui, view, station, &mut self.over),
-        }
+            .show(ui, |ui| self.way.show(ui, view, seen));
+        tapped
     }
 }
 

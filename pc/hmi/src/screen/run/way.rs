@@ -1,9 +1,10 @@
 //! Path, tool and deviation in space, drawn by lines; turned by a drag, enlarged by the wheel or two fingers.
 
 use super::{nothing, title};
-use crate::loaded::{Loaded, Way};
+use crate::drawn::{Drawn, Way};
+use crate::live::Live;
 use crate::screen::View;
-use crate::station::Station;
+use crate::seen::Seen;
 use crate::texts::Text;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2};
 use nalgebra::{Rotation3, Vector3};
@@ -74,9 +75,9 @@ impl Projection {
 }
 
 impl Standpoint {
-    pub fn show(&mut self, ui: &mut Ui, view: &View, station: &Station) {
-        let Some(loaded) = station.loaded() else {
-            nothing(ui, view, Text::NoProgram);
+    pub fn show(&mut self, ui: &mut Ui, view: &View, seen: &Seen) {
+        let Some((drawn, kinematics)) = seen.program else {
+            nothing(ui, view, view.no_program);
             return;
         };
         title(ui, view, view.words.say(Text::Way));
@@ -92,14 +93,14 @@ impl Standpoint {
         }
         let turned = Rotation3::from_axis_angle(&Vector3::x_axis(), f64::from(self.above))
             * Rotation3::from_axis_angle(&Vector3::z_axis(), f64::from(self.around));
-        let work = loaded.way.work();
+        let work = drawn.way.work();
         let size = (work.1 - work.0).norm().max(1.0);
         let projection = Projection::fit(turned, work, response.rect, self.zoom);
-        path(&painter, view, station, loaded, &projection);
+        path(&painter, view, seen.live, drawn, &projection);
         axes(&painter, view, response.rect, &projection.turned);
-        if let Some(newest) = &station.live.newest {
-            let pose = loaded.geometry.kinematics().forward(&newest.axes);
-            let colour = if station.live.beam_is_on() {
+        if let Some(newest) = &seen.live.newest {
+            let pose = kinematics.forward(&newest.axes);
+            let colour = if seen.live.beam_is_on() {
                 view.theme.beam
             } else {
                 Color32::WHITE
@@ -110,10 +111,10 @@ impl Standpoint {
 }
 
 /// The path: what works in the colour of its deviation where a beam was on, ways to it thin.
-fn path(painter: &Painter, view: &View, station: &Station, loaded: &Loaded, projection: &Projection) {
-    let limit = loaded.deviation_limit_mm();
-    let done = station.live.along_mm().filter(|_| station.live.newest.is_some());
-    for pair in loaded.way.places.windows(2) {
+fn path(painter: &Painter, view: &View, live: &Live, drawn: &Drawn, projection: &Projection) {
+    let limit = drawn.deviation_limit_mm;
+    let done = live.along_mm().filter(|_| live.newest.is_some());
+    for pair in drawn.way.places.windows(2) {
         let [from, to] = pair else { continue };
         let line = [
             projection.at(&from.pose.position),
@@ -121,8 +122,7 @@ fn path(painter: &Painter, view: &View, station: &Station, loaded: &Loaded, proj
         ];
         let stroke = match (from.along_mm, to.along_mm) {
             (Some(along), Some(end)) => {
-                let share =
-                    limit.and_then(|limit| Some(station.live.deviations.worst_between(along, end)? / limit));
+                let share = limit.and_then(|limit| Some(live.deviations.worst_between(along, end)? / limit));
                 let colour = match share {
                     Some(share) => view.theme.share(share),
                     None if done.is_some_and(|done| along <= done) => view.theme.slides[1],
