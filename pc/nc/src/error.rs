@@ -38,8 +38,23 @@ pub enum Problem {
     #[error("the line has more than {0} bytes: this is no NC program, or its ends of lines are missing")]
     LongLine(usize),
     /// No character of the dialect.
-    #[error("'{0}' is not understood here")]
+    #[error("'{0}' is not understood here: write text that is no program in ( ) or behind ;")]
     Character(char),
+    /// S of a beam.
+    #[error(
+        "S{s} is more than S{full}, the full power of the beam by laser in [program] of the machine file"
+    )]
+    LaserPower {
+        /// S.
+        s: f64,
+        /// S of the full power.
+        full: f64,
+    },
+    /// A tape mark that is not the first, and more than that.
+    #[error(
+        "'%' ends a program, and text stands behind it here: write a comment in ( ), and the number of a further program in a file of its own"
+    )]
+    TextBehindTapeMark,
     /// A command to Grbl, or a variable of Siemens.
     #[error(
         "'$' begins a command to Grbl or a variable of a Siemens controller, which are no part of programs here: leave it out, or list \"$\" under passed_over in [program] of the machine file"
@@ -381,7 +396,7 @@ pub enum Problem {
         second: &'static str,
     },
     /// A word that belongs to a code that is not in the block.
-    #[error("{0} belongs to no code of this block")]
+    #[error("{0} belongs to no code of this block: leave it out, or write it beside the code that it is for")]
     Orphan(String),
     /// A word that could belong to two codes.
     #[error("{word} could belong to {first} or to {second}: write them in two blocks")]

@@ -6,6 +6,7 @@ use super::codes::{Code, Group};
 use super::cycles::Sticky;
 use super::direction::DIRECTION_WORDS;
 use super::error::{NcError, Problem, SourcePosition};
+use super::laser::Burning;
 use super::modal::Modal;
 use super::nurbs::{OpenNurbs, Progress};
 use super::offsets::{Coordinates, Offsets};
@@ -64,6 +65,7 @@ pub(super) struct Interpreter {
     pub(super) pole: [f64; 3],
     pub(super) corners: Corners,
     pub(super) pending: Vec<Pending>,
+    pub(super) burning: Burning,
     /// Waits before the next path, and before its dwell.
     pub(super) waits: Vec<Wait>,
     /// The last comment or message since the last motion.
@@ -79,7 +81,7 @@ pub(super) struct Interpreter {
     /// Weld data that was called so far, by name.
     pub(super) welds: Vec<String>,
     /// Between WELDON and WELDOFF.
-    welding: bool,
+    pub(super) welding: bool,
     pub(super) notices: Vec<Notice>,
     /// The program has said its unit of length, or was told which one it is.
     pub(super) unit_clear: bool,
@@ -120,6 +122,7 @@ impl Interpreter {
             pole: [0.0; 3],
             corners: Corners::default(),
             pending: Vec::new(),
+            burning: Burning::default(),
             waits: Vec::new(),
             said: None,
             input_read: false,
@@ -335,6 +338,8 @@ impl Interpreter {
             None => (ProgramAction::WeldOff, "WELDOFF"),
         };
         self.welding = name.is_some();
+        // It sets the beam as it needs it.
+        self.burning = Burning::default();
         self.wait(Pending {
             action,
             code,
@@ -485,6 +490,9 @@ impl Interpreter {
 
     /// Keeps an event for the next motion. What takes effect at rest ends the path.
     pub(super) fn wait(&mut self, pending: Pending) {
+        let Some(pending) = self.of_beam(pending) else {
+            return;
+        };
         self.open &= !pending.at_rest;
         self.pending.push(pending);
     }

@@ -26,6 +26,7 @@ mod frame;
 mod grbl;
 mod hints;
 mod interpreter;
+mod laser;
 mod levels;
 mod line_parts;
 mod lookup;
@@ -55,6 +56,7 @@ mod waits;
 
 pub use error::{NcError, Problem, SourcePosition};
 pub use explain::{Told, explain, explain_file};
+pub use laser::Laser;
 pub use program::{
     ArcForm, ArcWay, Blend, ControlPoint, FeedRate, Motion, Move, Notice, NurbsWay, PathControl, Plane,
     Program, ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,

@@ -76,10 +76,20 @@ impl Interpreter {
             }
         }
         let tip = self.offsets.to_tip(&said.map(|value| value.unwrap_or(0.0)));
-        Ok(Words {
+        let mut words = Words {
             axes: std::array::from_fn(|axis| said[axis].map(|_| tip[axis])),
             ..Words::default()
-        })
+        };
+        for axis in 3..AXES {
+            // A table that another machine would have stays where it is.
+            if words.axes[axis] == Some(0.0) && !self.setup.fitted[axis] {
+                words.axes[axis] = None;
+                let name = AXIS_WORDS[axis];
+                let text = format!("{name}0 changes nothing: the machine has no axis {name}");
+                self.tell_once(text, place);
+            }
+        }
+        Ok(words)
     }
 
     /// G53: the axes named go to their coordinates, with G0 in axis space, with G1 so that the tip goes straight; whether
@@ -462,6 +472,7 @@ impl Interpreter {
             place,
         };
         self.start_path(Motion::Rapid, target);
+        self.burning.gate = false;
         self.open = false;
         Ok(())
     }
@@ -474,7 +485,8 @@ impl Interpreter {
         feed: FeedRate,
         place: SourcePosition,
     ) -> Result<(), NcError> {
-        self.spindle.check_speed()?;
+        self.spindle.check_speed(self.setup.laser.is_some())?;
+        self.burn(feed, place)?;
         self.retract(&mut way, &mut words, place, true)?;
         self.corners.forget();
         self.said = None;

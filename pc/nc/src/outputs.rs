@@ -84,7 +84,11 @@ impl Spindle {
             self.without_speed = None;
         }
         match (own, s) {
-            (Some(code), _) if code.code == Code::SpindleOff => {
+            (Some(code), s) if code.code == Code::SpindleOff => {
+                // The speed comes first, as on LinuxCNC.
+                if let Some(s) = s.filter(|_| self.turns.is_some()) {
+                    add(ProgramAction::SpindleSpeed(s.value), "S", s.place);
+                }
                 self.turns = None;
                 self.without_speed = None;
                 add(ProgramAction::SpindleOff, code.name, code.place);
@@ -129,13 +133,16 @@ impl Spindle {
         unsaid
     }
 
-    /// M3 or M4 without an S turns at 0 r/min, and nothing may be fed so.
-    pub(super) fn check_speed(&self) -> Result<(), NcError> {
-        match self.without_speed {
-            Some((code, place)) => {
-                let word = "S, here or before the first motion that feeds, or spindle_rpm in [program] of the machine file";
-                Err(Problem::Missing { code, word }.at(place))
+    /// M3 or M4 without an S turns at 0 r/min, and nothing may be fed so; as little with a beam, which would be off.
+    pub(super) fn check_speed(&self, is_beam: bool) -> Result<(), NcError> {
+        let word = match is_beam {
+            true => "S, here or before the first motion that feeds: without it the beam is off",
+            false => {
+                "S, here or before the first motion that feeds, or spindle_rpm in [program] of the machine file"
             }
+        };
+        match self.without_speed {
+            Some((code, place)) => Err(Problem::Missing { code, word }.at(place)),
             None => Ok(()),
         }
     }

@@ -249,8 +249,13 @@ impl Reader {
         };
         let parsed = parse(&text, here.line, skipped, &mut self.interpreter)?;
         let seen = self.position.seen;
-        // Some archives have a tape mark behind the header of the program.
-        self.position.seen |= parsed != Parsed::Blank && (seen || !calls::is_archive_header(&text));
+        // Comments may stand before the tape mark, and some archives have it behind the header of the program.
+        let says_nothing = match &parsed {
+            Parsed::Blank => true,
+            Parsed::Block(block) => block.is_comment(),
+            _ => !seen && calls::is_archive_header(&text),
+        };
+        self.position.seen |= !says_nothing;
         let mut ran = Ran {
             kind: Kind::of(&parsed, &text),
             text,
@@ -259,6 +264,9 @@ impl Reader {
         match parsed {
             Parsed::Blank => {}
             Parsed::Percent if seen && self.position.levels.len() == 1 => {
+                if !ends_tape(&ran.text) {
+                    return Err(Problem::TextBehindTapeMark.at(here));
+                }
                 self.interpreter.finish("%", here)?;
                 return Ok(false);
             }
@@ -327,6 +335,12 @@ impl Reader {
         (level.offset, level.line) = (offset, line);
         self.reopen();
     }
+}
+
+/// Whether the tape mark of `text` stands alone, or is the header of the next program of an archive.
+fn ends_tape(text: &str) -> bool {
+    let behind = text.trim_start().trim_start_matches('%').trim_start();
+    behind.is_empty() || behind.starts_with(['(', ';']) || calls::is_archive_header(text)
 }
 
 /// The other end of a loop, condition or subroutine is missing.

@@ -194,6 +194,9 @@ impl Interpreter {
             let goes = fitted[axis] && (all || said[axis].is_some());
             goes.then_some(home[axis])
         });
+        if axes == [None; AXES] {
+            return Ok(());
+        }
         self.go_in_axes(axes, place)
     }
 

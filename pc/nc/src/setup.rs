@@ -1,5 +1,6 @@
 //! What a program begins with: choices of the operator, and what the machine brings along.
 
+use super::laser::Laser;
 use super::program::{PathControl, Plane};
 use shared::io::AXES;
 use std::collections::{BTreeMap, BTreeSet};
@@ -46,6 +47,8 @@ pub struct Setup {
     pub grbl_commands: bool,
     /// S of M3 and M4 in programs that have said none \[r/min\].
     pub spindle_rpm: Option<f64>,
+    /// The beam that M3, M4, M5 and S switch in place of a spindle.
+    pub laser: Option<Laser>,
     /// F of programs that have said none \[mm/min\].
     pub feed_mm_min: Option<f64>,
     /// Where subroutines in files of their own are.
@@ -69,6 +72,7 @@ impl Default for Setup {
             passed_over: BTreeSet::new(),
             grbl_commands: false,
             spindle_rpm: None,
+            laser: None,
             feed_mm_min: None,
             folders: Vec::new(),
             kinematics: None,

@@ -4,7 +4,7 @@ use super::targets::Tip;
 use super::tip_of_machine::TipOfMachine;
 use super::{PathError, Planner};
 use config::machine::{ArcPlane, LengthUnit, PathMode};
-use nc::{Blend, PathControl, Plane, Program, ProgramAction, Setup, TipAndAxes};
+use nc::{Blend, Laser, PathControl, Plane, Program, ProgramAction, Setup, TipAndAxes};
 use shared::io::AXES;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -43,10 +43,22 @@ impl Planner {
             passed_over: program.passed_over.numbers().clone(),
             grbl_commands: program.passed_over.grbl_commands(),
             spindle_rpm: program.spindle_rpm,
+            laser: self.laser(),
             feed_mm_min: program.feed_mm_min,
             kinematics: Some(Arc::new(kinematics)),
             ..Setup::default()
         }
+    }
+
+    /// The beam that M3, M4, M5 and S switch, where the machine file says one.
+    fn laser(&self) -> Option<Laser> {
+        let words = self.program.laser?;
+        let side = words.beam.checked_sub(1)?;
+        Some(Laser {
+            side,
+            full_s: words.full_s,
+            full_watt: (*self.largest_power.get(usize::from(side))?)?,
+        })
     }
 
     /// What of `program` this machine passes over, and what it takes for granted, a sentence each.

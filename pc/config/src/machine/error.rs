@@ -71,7 +71,7 @@ pub enum Mistake {
         /// How many there are.
         most: usize,
     },
-    /// An output or input hangs on a beam that the machine does not have.
+    /// An output, an input or programs hang on a beam that the machine does not have.
     #[error("{key} names beam {beam}, but there is no [beams.{beam}]")]
     NoSuchBeam {
         /// Dotted name of the table.

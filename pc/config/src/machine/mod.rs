@@ -12,7 +12,7 @@ mod weak_protection;
 pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
 pub use process_io::{InputNames, OutputNames};
-pub use program::{ArcPlane, LengthUnit, PassedOver, PathMode, ProgramConfig, Rotary};
+pub use program::{ArcPlane, LaserWords, LengthUnit, PassedOver, PathMode, ProgramConfig, Rotary};
 pub use weak_protection::WeakProtection;
 
 use crate::probe::ProbeUnit;

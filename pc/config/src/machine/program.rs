@@ -30,6 +30,8 @@ pub struct ProgramConfig {
     pub spindle_rpm: Option<f64>,
     /// F of programs that have said none \[mm/min\].
     pub feed_mm_min: Option<f64>,
+    /// The beam that M3, M4, M5 and S switch.
+    pub laser: Option<LaserWords>,
 }
 
 impl Default for ProgramConfig {
@@ -44,8 +46,19 @@ impl Default for ProgramConfig {
             passed_over: PassedOver::default(),
             spindle_rpm: None,
             feed_mm_min: None,
+            laser: None,
         }
     }
+}
+
+/// How M3, M4, M5 and S switch a beam.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LaserWords {
+    /// 1 or 2.
+    pub beam: u8,
+    /// S of its full power.
+    pub full_s: f64,
 }
 
 /// Unit of lengths.
@@ -188,6 +201,7 @@ pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
         let Some(speed) = speed else { continue };
         in_range(key, speed, speed > 0.0 && speed.is_finite(), "above 0")?;
     }
+    laser(machine)?;
     let fitted = machine.motion.kinematics.fitted();
     for (axis, angle) in (AXES - 3..).zip(program.rotary_deg.into_array()) {
         let Some(angle) = angle else { continue };
@@ -197,6 +211,41 @@ pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
             let within = (limits.travel_min..=limits.travel_max).contains(&angle);
             in_range(key, angle, within, "within the travel")?;
         }
+    }
+    Ok(())
+}
+
+/// The beam is there, no other one is a spindle, and its S says how much of its power.
+fn laser(machine: &MachineFile) -> Result<(), Mistake> {
+    let Some(LaserWords { beam, full_s }) = machine.program.laser else {
+        return Ok(());
+    };
+    let beams = &machine.motion.beams;
+    let side = usize::from(beam).checked_sub(1);
+    if !side.and_then(|side| beams.get(side)).is_some_and(Option::is_some) {
+        let key = "program.laser".to_owned();
+        return Err(Mistake::NoSuchBeam { key, beam });
+    }
+    let has_spindle = beams.iter().flatten().any(|beam| beam.stays_on_at_rest);
+    in_range(
+        "program.laser.beam",
+        f64::from(beam),
+        !has_spindle,
+        "left out: M3, M4, M5 and S are those of the spindle, the beam with stays_on_at_rest",
+    )?;
+    in_range(
+        "program.laser.full_s",
+        full_s,
+        full_s > 0.0 && full_s.is_finite(),
+        "above 0",
+    )?;
+    if let Some(speed) = machine.program.spindle_rpm {
+        in_range(
+            "program.spindle_rpm",
+            speed,
+            false,
+            "left out: laser says what S means",
+        )?;
     }
     Ok(())
 }

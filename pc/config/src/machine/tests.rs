@@ -488,6 +488,7 @@ fn programs_begin_with_the_modes_that_the_file_says() {
         passed_over: PassedOver::default(),
         spindle_rpm: Some(600.0),
         feed_mm_min: Some(300.0),
+        laser: None,
     };
     assert_eq!(of(all), wanted);
     let passed = of("[program]\npassed_over = [\"M31\", \"M50\", \"M9026\"]").passed_over;
@@ -497,6 +498,23 @@ fn programs_begin_with_the_modes_that_the_file_says() {
     assert_eq!(passed.numbers().iter().collect::<Vec<_>>(), [&31]);
     assert!(passed.grbl_commands());
     assert_eq!(of("[program]\npath_mode = \"G61.1\"").path_mode, PathMode::G61_1);
+    let laser = of("[program]\nlaser = { beam = 1, full_s = 1000 }").laser;
+    let (beam, full_s) = (1, 1000.0);
+    assert_eq!(laser, Some(LaserWords { beam, full_s }));
+}
+
+#[test]
+fn a_beam_stands_for_a_spindle_only_where_there_is_none() {
+    let stir = include_str!("../../../../machines/stir-gantry.toml");
+    let error = error_of(&format!(
+        "{stir}\n[program]\nlaser = {{ beam = 1, full_s = 1000 }}\n"
+    ));
+    assert!(
+        error.contains(
+            "program.laser.beam is 1, but must be left out: M3, M4, M5 and S are those of the spindle"
+        ),
+        "{error}"
+    );
 }
 
 #[test]
@@ -577,6 +595,27 @@ fn what_programs_cannot_begin_with_is_told_with_file_line_and_key() {
             "passed_over = [\"M31.5\"]",
             1,
             "program.passed_over: \"M31.5\" is no M code",
+        ),
+        (
+            "laser = { beam = 2, full_s = 1000 }",
+            1,
+            "program.laser names beam 2, but there is no [beams.2]",
+        ),
+        (
+            "laser = { beam = 0, full_s = 1000 }",
+            1,
+            "program.laser names beam 0",
+        ),
+        (
+            "laser = { beam = 1, full_s = 0 }",
+            1,
+            "program.laser.full_s is 0, but must be above 0",
+        ),
+        ("laser = { beam = 1 }", 1, "missing field `full_s`"),
+        (
+            "laser = { beam = 1, full_s = 255 }\nspindle_rpm = 600",
+            2,
+            "program.spindle_rpm is 600, but must be left out: laser says what S means",
         ),
         (
             "rotary_deg = { X = 0.0 }",

@@ -117,7 +117,8 @@ pub fn output(writer: &mut Writer) {
                 writer.block(&format!("S{speed} M3"));
             }
             7 => writer.block("M4"),
-            8 | 9 => writer.block("M5"),
+            8 => writer.block("M5"),
+            9 => writer.block(&format!("M5 S{speed:.1}")),
             10 => {
                 let code = *writer.random.of(&["M7", "M8", "M9"]);
                 writer.block(code);

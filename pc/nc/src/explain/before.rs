@@ -5,6 +5,7 @@ use crate::modal::Modal;
 use crate::offsets::{Coordinates, Offsets};
 use crate::outputs::Pending;
 use crate::reader::Reader;
+use shared::geometry::Turn;
 use shared::io::AXES;
 
 /// What is compared with the state after the block.
@@ -19,6 +20,7 @@ pub(super) struct Before {
     pub(super) tools: [u32; 2],
     pub(super) tool_length: f64,
     pub(super) spindle_speed: f64,
+    pub(super) turns: Option<Turn>,
     pub(super) saved: usize,
     /// A hole after every motion.
     pub(super) drills: bool,
@@ -52,6 +54,7 @@ impl Before {
             tools: state.tool_numbers,
             tool_length: state.tools.length,
             spindle_speed: state.spindle.speed(),
+            turns: state.spindle.turns(),
             saved: state.saved.len(),
             drills: state.modal_drilling.is_some(),
             at: state.place(),

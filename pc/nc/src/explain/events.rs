@@ -27,10 +27,12 @@ pub(super) fn action(action: &ProgramAction, welds: &[String]) -> String {
             Channel::Power(side) => format!("power of beam {}: {value} W", side + 1),
             Channel::Analog(output) => format!("analog output {}: {value}", output + 1),
         },
-        // No program says these; weld data does.
-        ProgramAction::Output(PathAction::BySpeed { .. } | PathAction::AtRest { .. }) => {
-            "weld data".to_owned()
-        }
+        ProgramAction::Output(PathAction::BySpeed { full_mm_s, .. }) => match full_mm_s * 60.0 {
+            0.0 => "the power does not follow the speed".to_owned(),
+            mm_min => format!("the power follows the speed, full at {mm_min} mm/min"),
+        },
+        // No program says it; weld data does.
+        ProgramAction::Output(PathAction::AtRest { .. }) => "weld data".to_owned(),
         ProgramAction::WeldOn(index) => {
             let name = welds.get(*index).map_or("", String::as_str);
             format!("a weld begins, with the weld data \"{name}\"")

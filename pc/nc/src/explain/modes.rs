@@ -6,6 +6,7 @@ use crate::codes::Code;
 use crate::interpreter::Interpreter;
 use crate::offsets::{Coordinates, NO_SYSTEM, System};
 use crate::program::{Blend, PathControl, Plane};
+use shared::geometry::Turn;
 
 /// What is not as it was before, a phrase each; without the mode of motion where the block `moves`.
 pub(super) fn changes(before: &Before, after: &Interpreter, moves: bool) -> Vec<String> {
@@ -28,8 +29,22 @@ pub(super) fn changes(before: &Before, after: &Interpreter, moves: bool) -> Vec<
         ));
     }
     let speed = after.spindle.speed();
+    let of_beam = after.setup.laser.is_some();
     if speed != before.spindle_speed {
-        changes.push(format!("spindle speed from here: {} r/min", figure(speed)));
+        changes.push(match of_beam {
+            true => format!("S of the beam from here: {}", figure(speed)),
+            false => format!("spindle speed from here: {} r/min", figure(speed)),
+        });
+    }
+    if of_beam && after.spindle.turns() != before.turns {
+        let burns = match after.spindle.turns() {
+            Some(Turn::Clockwise) => "burns in motions that feed, with the power of S",
+            Some(Turn::CounterClockwise) => {
+                "burns in motions that feed, with the power of S in proportion to the speed"
+            }
+            None => "is off",
+        };
+        changes.push(format!("from here the beam {burns}"));
     }
     for (code, (old, new)) in ["G28", "G30"].iter().zip(before.homes.iter().zip(&after.homes)) {
         if old != new {

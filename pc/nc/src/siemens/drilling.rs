@@ -228,7 +228,9 @@ impl Words {
             false => bottom,
         };
         if first > reference {
-            return Err(self.wrong("the first depth is above RFP"));
+            return Err(self.wrong(
+                "the first depth is above RFP: FDEP is its coordinate, FDPR how far below RFP it is",
+            ));
         }
         let clears = self.get(11) == 1.0;
         let deep = reference - bottom;

@@ -200,7 +200,7 @@ fn functions_of_other_machines_are_passed_over_where_the_machine_file_lists_them
     let of = |text: &str| with_functions(text).unwrap_err();
     assert_eq!(
         of("M31 P5\nM2"),
-        "line 1, column 5: P belongs to no code of this block"
+        "line 1, column 5: P belongs to no code of this block: leave it out, or write it beside the code that it is for"
     );
     assert!(of("X5 M31\nM2").contains("axis words without a motion"));
     // What is not listed is an error, with the way out.

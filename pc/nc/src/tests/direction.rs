@@ -74,9 +74,9 @@ fn i_j_k_are_a_direction_after_g43_5_in_straight_motions_only() {
     assert_eq!(angles("G43.5\nG2 X10 I5"), [None; 3]);
     for end in ["G43.4", "G49"] {
         let error = wrong(&format!("G43.5\n{end}\nG1 X10 I3 K4"));
-        assert_eq!(
-            error, "line 4, column 8: I belongs to no code of this block",
-            "{end}"
+        assert!(
+            error.starts_with("line 4, column 8: I belongs to no code of this block"),
+            "{end}: {error}"
         );
     }
 }
@@ -108,7 +108,7 @@ fn directions_that_are_none_are_refused() {
         for word in ["A3=", "V1="] {
             let error = wrong(&format!("{code} {word}1"));
             assert!(
-                error.ends_with(&format!("{word} belongs to no code of this block")),
+                error.contains(&format!("{word} belongs to no code of this block")),
                 "{code}: {error}"
             );
         }

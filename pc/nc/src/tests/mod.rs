@@ -6,6 +6,7 @@ mod dialects;
 mod direction;
 mod explain;
 mod flow;
+mod laser;
 mod macros;
 mod mirror;
 mod modes;
@@ -13,6 +14,7 @@ mod nurbs;
 mod outputs;
 mod reading;
 mod siemens;
+mod tape_marks;
 mod tool_length;
 mod waits;
 

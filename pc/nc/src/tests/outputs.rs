@@ -250,6 +250,16 @@ fn the_machine_file_may_say_s_for_programs_that_do_not() {
 }
 
 #[test]
+fn s_beside_m5_comes_before_it() {
+    let off = (0, ProgramAction::SpindleOff, "M5");
+    let slow = (0, ProgramAction::SpindleSpeed(50.0), "S");
+    let last = |body: &str| seen(body).pop().unwrap().2;
+    assert_eq!(last("S600 M3\nG1 X10 F600\nM5 S50\nM2"), [slow, off]);
+    // It does not turn.
+    assert_eq!(last("M5 S50\nM2"), [off]);
+}
+
+#[test]
 fn the_machine_file_may_say_f_for_programs_that_do_not() {
     let read = |body: &str| {
         let options = Options {

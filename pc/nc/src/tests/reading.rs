@@ -118,7 +118,10 @@ fn what_is_not_utf_8_is_latin_1_and_a_byte_order_mark_is_nothing() {
     let read = |text: &[u8]| read(&Source::Text(text.into()), Options::default(), 10);
     assert!(read(b"\xef\xbb\xbf(Stra\xdfe)\nG0 X5 (\xb0)\nM2\n").is_ok());
     let error = read(b"G21\n\xdf\n").unwrap_err();
-    assert_eq!(error.to_string(), "line 2, column 1: 'ß' is not understood here");
+    assert_eq!(
+        error.to_string(),
+        "line 2, column 1: 'ß' is not understood here: write text that is no program in ( ) or behind ;"
+    );
 }
 
 #[test]

@@ -152,3 +152,37 @@ fn a_program_runs_without_the_codes_that_the_machine_file_passes_over() {
     let (_, axes) = ends("[program]\npassed_over = [\"M31\"]", text);
     assert_near(axes[1][0], 520.0);
 }
+
+#[test]
+fn m3_and_m4_open_the_gate_of_the_laser_that_the_machine_file_names() {
+    use shared::protocol::PathAction;
+    let text = "G0 X500 Y500 Z100\nM4\nG1 X520 S500 F1200\nX540 S0\nX560 S1000\nG0 Y520\nM5\nM2";
+    let (paths, _) = ends("[program]\nlaser = { beam = 1, full_s = 1000 }", text);
+    let full = planner_of("ac-head").largest_power[0].unwrap();
+    let gates_and_powers = |path: &PlannedPath| -> Vec<(f64, Result<bool, f64>)> {
+        let events = path.legs().flat_map(|leg| leg.unwrap().events);
+        let seen = events.filter_map(|event| {
+            let what = match event.action {
+                PathAction::Beam { side: 0, on } => Ok(on),
+                PathAction::Power { side: 0, watt } => Err(watt),
+                _ => return None,
+            };
+            Some(((event.s_mm * 1e9).round() / 1e9, what))
+        });
+        seen.collect()
+    };
+    let expected = [
+        (0.0, Err(full / 2.0)),
+        (0.0, Ok(true)),
+        (20.0, Ok(false)),
+        (40.0, Err(full)),
+        (40.0, Ok(true)),
+    ];
+    assert_eq!(gates_and_powers(&paths[1]), expected);
+    // No gate is open on a rapid.
+    assert!(
+        !gates_and_powers(&paths[2])
+            .iter()
+            .any(|(_, what)| *what == Ok(true))
+    );
+}
