@@ -48,7 +48,8 @@ impl Default for Requirements {
 }
 
 impl Requirements {
-    fn are_kept(&self, margins: &Margins) -> bool {
+    /// Whether `margins` are enough.
+    pub fn are_kept(&self, margins: &Margins) -> bool {
         margins.gain_db >= self.gain_db && margins.phase_deg >= self.phase_deg && margins.peak <= self.peak
     }
 }
@@ -90,7 +91,7 @@ pub fn design(
     motor: &MotorConfig,
     requirements: &Requirements,
 ) -> Result<Loop, NoDesign> {
-    let before = margins(response, motor)?;
+    let before = Margins::of(&open_loop(response, motor)?);
     let lag = Lag::of(response).ok_or(NoDesign::NoLag)?;
     // Commands are those of a drive whose gain is right from here on.
     let mut bare = motor.clone();
@@ -134,7 +135,7 @@ pub fn design(
 
 impl Response {
     /// The same of a drive whose commands count for so much more.
-    fn of_gain(&self, factor: f64) -> Self {
+    pub(crate) fn of_gain(&self, factor: f64) -> Self {
         let mut scaled = self.clone();
         scaled.lines.iter_mut().for_each(|line| line.gain *= factor);
         scaled
@@ -152,15 +153,16 @@ fn higher(
     }
 }
 
-/// Margins of the loop of `motor` about a response.
-fn margins(response: &Response, motor: &MotorConfig) -> Result<Margins, ParameterError> {
+/// The open loop of `motor` about a response, at its lines \[Hz\].
+pub(crate) fn open_loop(
+    response: &Response,
+    motor: &MotorConfig,
+) -> Result<Vec<(f64, Complex)>, ParameterError> {
     let filters = filters(motor)?;
-    Ok(Margins::of(&open_loop(response, |hz| {
-        pid(motor, hz) * filters[number(hz)]
-    })))
+    Ok(loop_of(response, |hz| pid(motor, hz) * filters[number(hz)]))
 }
 
-fn open_loop(response: &Response, controller: impl Fn(f64) -> Complex) -> Vec<(f64, Complex)> {
+fn loop_of(response: &Response, controller: impl Fn(f64) -> Complex) -> Vec<(f64, Complex)> {
     let lines = response.lines.iter();
     lines
         .map(|line| (line.hz, controller(line.hz) * line.gain))
@@ -181,7 +183,7 @@ fn with_highest_gain(
     let filters = filters(motor)?;
     // All parts of the controller grow with the proportional gain.
     let unit = motor.with_gain(1.0);
-    let shape = open_loop(response, |hz| pid(&unit, hz) * filters[number(hz)]);
+    let shape = loop_of(response, |hz| pid(&unit, hz) * filters[number(hz)]);
     let mut best = None;
     let mut kp = LEAST_KP;
     while kp <= MOST_KP {
@@ -230,8 +232,7 @@ struct Resonance {
 impl Resonance {
     /// That with the highest open-loop gain of those that stand out, behind the notches of `motor`.
     fn highest(response: &Response, motor: &MotorConfig) -> Result<Option<Self>, ParameterError> {
-        let filters = filters(motor)?;
-        let gains = open_loop(response, |hz| pid(motor, hz) * filters[number(hz)]);
+        let gains = open_loop(response, motor)?;
         let near = |hz: f64, ratio: f64| {
             let found = gains.iter().min_by(|(a, _), (b, _)| {
                 let off = |at: f64| (at - hz * ratio).abs();

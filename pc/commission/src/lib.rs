@@ -6,11 +6,16 @@
 //!                                                   → design: controller × response → Margins → Loop → machine file
 //! capture in which the motor turns round, Response → friction → Loop
 //! ```
+//! [`excitations`] has what a motor of a machine is told, [`Found`] all of this for what was captured then.
+//!
 //! No model of the mechanics is assumed: margins are those of the controller as it is built and the response as it was measured.
 
+mod bode;
 mod circle;
 mod controller;
 mod design;
+mod excitations;
+mod found;
 mod friction;
 mod lag;
 mod machine_file;
@@ -18,8 +23,11 @@ mod margins;
 mod plan;
 mod response;
 
+pub use bode::Bode;
 pub use circle::{REVERSALS_DEG, Turn, TurnFigures, bidirectional_mm};
 pub use design::{Loop, NoDesign, Requirements, design};
+pub use excitations::{CapturedMotion, excitations, softened};
+pub use found::{Found, NotFound, measured};
 pub use friction::{NoFriction, friction};
 pub use lag::Lag;
 pub use machine_file::{WriteError, rewrite};

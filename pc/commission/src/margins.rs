@@ -7,8 +7,12 @@ use crate::Complex;
 pub struct Margins {
     /// By so much the gain may grow \[dB\].
     pub gain_db: f64,
+    /// The frequency at which it would swing then \[Hz\], if there is one.
+    pub gain_hz: Option<f64>,
     /// By so much the phase may fall where the gain is 1 \[°\].
     pub phase_deg: f64,
+    /// The frequency at which it would swing then \[Hz\], if there is one.
+    pub phase_hz: Option<f64>,
     /// Peak of the sensitivity 1/(1 + L): by so much the loop makes some errors larger.
     pub peak: f64,
     /// Highest frequency at which the gain is 1 \[Hz\]; 0 if it never is.
@@ -20,7 +24,9 @@ impl Margins {
     pub fn of(open_loop: &[(f64, Complex)]) -> Self {
         let mut margins = Self {
             gain_db: f64::INFINITY,
+            gain_hz: None,
             phase_deg: f64::INFINITY,
+            phase_hz: None,
             peak: 0.0,
             crossover_hz: 0.0,
         };
@@ -31,16 +37,20 @@ impl Margins {
             let ((f0, from), (f1, to)) = (pair[0], pair[1]);
             let at = |part: f64| (f0 + part * (f1 - f0), from + (to - from) * part);
             if from.im.signum() != to.im.signum() {
-                let (_, value) = at(from.im / (from.im - to.im));
+                let (hz, value) = at(from.im / (from.im - to.im));
+                let gain_db = -20.0 * value.norm().log10();
                 // To the right of 0 it crosses the axis without harm.
-                if value.re < 0.0 {
-                    margins.gain_db = margins.gain_db.min(-20.0 * value.norm().log10());
+                if value.re < 0.0 && gain_db < margins.gain_db {
+                    (margins.gain_db, margins.gain_hz) = (gain_db, Some(hz));
                 }
             }
             let (before, after) = (from.norm() - 1.0, to.norm() - 1.0);
             if before.signum() != after.signum() {
                 let (hz, value) = at(before / (before - after));
-                margins.phase_deg = margins.phase_deg.min((-value).arg().to_degrees());
+                let phase_deg = (-value).arg().to_degrees();
+                if phase_deg < margins.phase_deg {
+                    (margins.phase_deg, margins.phase_hz) = (phase_deg, Some(hz));
+                }
                 margins.crossover_hz = margins.crossover_hz.max(hz);
             }
         }
@@ -72,6 +82,9 @@ mod tests {
         let in_db = 20.0 * (crosses / gain).log10();
         assert!((margins.gain_db - in_db).abs() < 0.01, "{margins:?} {in_db}");
         assert!((margins.crossover_hz - gain / TAU).abs() < 0.01, "{margins:?}");
+        let near = |found: Option<f64>, hz: f64| found.is_some_and(|found| (found - hz).abs() < 1e-3);
+        assert!(near(margins.gain_hz, crosses / TAU), "{margins:?}");
+        assert!(near(margins.phase_hz, gain / TAU), "{margins:?}");
     }
 
     /// (s + 1)⁻³ · k swings by itself at k = 8.

@@ -70,13 +70,32 @@ pub enum NoResponse {
 }
 
 impl Response {
-    /// From captures of a motor. With R the chirp, U the command and Y the position, the response is S_ry/S_ru: the feedback,
-    /// which carries the noise of Y into U, does not bias it (Ljung, System Identification, 13.5). The coherence is
-    /// |S_ry|²/(S_rr·S_yy). The sums go over the captures that have excited a line.
+    /// From captures of a motor: of its [`Line`]s those that are believed.
     ///
     /// # Errors
     /// Too few lines are believed.
     pub fn of(captures: &[Capture], motor: &MotorConfig) -> Result<Self, NoResponse> {
+        let all = Line::of(captures, motor)?;
+        let below = |line: &&Line| line.hz <= MOST_BELOW_HZ;
+        let lines: Vec<_> = all.iter().filter(|line| line.is_believed()).copied().collect();
+        let asked = all.iter().filter(below).count();
+        let believed = lines.iter().filter(below).count() as f64 / asked as f64;
+        if believed < MOST {
+            let percent = 100.0 * believed;
+            return Err(NoResponse::Incoherent { percent });
+        }
+        Ok(Self { lines, believed })
+    }
+}
+
+impl Line {
+    /// All that were excited, upwards, from captures of a motor. With R the chirp, U the command and Y the position, the response is
+    /// S_ry/S_ru: the feedback, which carries the noise of Y into U, does not bias it (Ljung, System Identification, 13.5). The
+    /// coherence is |S_ry|²/(S_rr·S_yy). The sums go over the captures that have excited a line.
+    ///
+    /// # Errors
+    /// A capture is not whole, or there is none.
+    pub fn of(captures: &[Capture], motor: &MotorConfig) -> Result<Vec<Self>, NoResponse> {
         let whole = |capture: &Capture| capture.samples.len() == CAPTURE_TICKS;
         if captures.is_empty() || !captures.iter().all(whole) {
             return Err(NoResponse::Empty);
@@ -100,26 +119,22 @@ impl Response {
                 sums.add(asked[index], command[index], position[index]);
             }
         }
-        let below = |hz: f64| hz <= MOST_BELOW_HZ;
-        let lines: Vec<_> = sums
-            .iter()
-            .map(|(number, sums)| Line {
-                hz: f64::from(*number) * Chirp::LINE_HZ,
-                gain: sums.ry / sums.ru,
-                coherence: sums.ry.norm_sqr() / (sums.rr * sums.yy),
-            })
-            .filter(|line| line.coherence >= if below(line.hz) { BELIEVED } else { BELIEVED_ABOVE })
-            .collect();
-        let asked = sums
-            .keys()
-            .filter(|number| below(f64::from(**number) * Chirp::LINE_HZ))
-            .count();
-        let believed = lines.iter().filter(|line| below(line.hz)).count() as f64 / asked as f64;
-        if believed < MOST {
-            let percent = 100.0 * believed;
-            return Err(NoResponse::Incoherent { percent });
-        }
-        Ok(Self { lines, believed })
+        let line = |(number, sums): (&u32, &Sums)| Self {
+            hz: f64::from(*number) * Chirp::LINE_HZ,
+            gain: sums.ry / sums.ru,
+            coherence: sums.ry.norm_sqr() / (sums.rr * sums.yy),
+        };
+        Ok(sums.iter().map(line).collect())
+    }
+
+    /// Whether its coherence is enough.
+    pub fn is_believed(&self) -> bool {
+        let least = if self.hz <= MOST_BELOW_HZ {
+            BELIEVED
+        } else {
+            BELIEVED_ABOVE
+        };
+        self.coherence >= least
     }
 }
 

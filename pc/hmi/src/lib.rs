@@ -8,6 +8,7 @@
 //! - [`loaded`]: a program that was read, planned and predicted for a machine, before anything moves.
 //! - [`running`]: its job, on a thread of its own.
 //! - [`live`]: what the screen knows of that job, folded from its events; bounded, however long the job.
+//! - [`commissioning`]: motors while they are commissioned.
 //! - [`parameters`]: the machine file while its parameters are changed.
 //! - [`records`]: reports of past jobs, read back.
 //! - [`texts`]: everything that the screen says, in every language.
@@ -22,6 +23,7 @@
 //! - [`screen`]: the pages. They read the station and ask it for what the operator wants.
 
 pub mod access;
+pub mod commissioning;
 pub mod drawn;
 pub mod live;
 pub mod loaded;

@@ -1,5 +1,7 @@
 //! A job, on a thread of its own: of the program that is loaded, or by hand.
 
+mod commission;
+
 use crate::loaded::Loaded;
 use crate::seen::Ended;
 use crate::serving::stage::Stage;
@@ -10,7 +12,7 @@ use host_link::boards::Boards;
 use host_link::events::{Interest, Subscription};
 use host_link::spool::Spooling;
 use host_link::{Command, CommandError, Control, Remote, control};
-use job::{ImageCameras, Job, Names, Work};
+use job::{CircularTest, ImageCameras, Job, Names, PlannedCircle, SeenCircle, Work};
 use plant_file::PlantChoice;
 use report::{LogColumns, LogWriter, Report};
 use std::path::{Path, PathBuf};
@@ -35,6 +37,20 @@ pub enum Task {
     },
     /// The machine homes, and is operated by hand then.
     ByHand(Arc<Machine>),
+    /// Motors are measured.
+    Measure {
+        /// The machine.
+        machine: Arc<Machine>,
+        /// Their indices.
+        motors: Vec<usize>,
+    },
+    /// A circular test.
+    Circle {
+        /// The machine.
+        machine: Arc<Machine>,
+        /// The circle.
+        circle: Box<PlannedCircle>,
+    },
 }
 
 /// A machine, as its file says.
@@ -83,7 +99,7 @@ pub struct Running {
 }
 
 /// How a job ended.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Outcome {
     /// Why it ended early, as a sentence.
     pub error: Option<String>,
@@ -91,6 +107,8 @@ pub struct Outcome {
     pub report: Option<Report>,
     /// Where the report is, if there is one.
     pub folder: Option<PathBuf>,
+    /// How it went round, if it was to.
+    pub circle: Option<(CircularTest, SeenCircle)>,
 }
 
 impl Outcome {
@@ -121,6 +139,10 @@ impl Running {
                 run(&loaded, &place, &own, control)
             }
             Task::ByHand(machine) => by_hand(&machine, &place, &own, control),
+            Task::Measure { machine, motors } => {
+                commission::measure(&machine, &motors, &place, &own, control)
+            }
+            Task::Circle { machine, circle } => commission::circle(&machine, &circle, &place, &own, control),
         });
         Self {
             remote,
@@ -175,23 +197,27 @@ fn by_hand(
     remote: &Remote,
     mut control: Control,
 ) -> anyhow::Result<Outcome> {
-    let job = Job {
-        machine: &machine.is,
-        work: Work::ByHand,
-        part: None,
-        speed_m_per_min: None,
-        from_line: None,
-        surroundings: Surroundings::default().into(),
-        spooling: Spooling::nothing(),
-        names: Names::default(),
-    };
+    let job = bare(&machine.is, Work::ByHand, Spooling::nothing());
     let mut boards = connect(&machine.is, place, remote)?;
     let record = job::run(boards.as_mut(), &job, &mut control)?;
     Ok(Outcome {
         error: record.error.as_ref().map(ToString::to_string),
-        report: None,
-        folder: None,
+        ..Outcome::default()
     })
+}
+
+/// `work` with nothing around the machine, no part to judge and no report.
+fn bare<'a>(machine: &'a MachineFile, work: Work<'a>, spooling: Spooling) -> Job<'a> {
+    Job {
+        machine,
+        work,
+        part: None,
+        speed_m_per_min: None,
+        from_line: None,
+        surroundings: Surroundings::default().into(),
+        spooling,
+        names: Names::default(),
+    }
 }
 
 /// The same with its report in `folder`.
@@ -234,6 +260,7 @@ fn run_in(
         error: ended.error.as_ref().map(ToString::to_string),
         report: ended.began.then_some(ended.report),
         folder: written.map(|()| folder.to_owned()),
+        circle: None,
     })
 }
 

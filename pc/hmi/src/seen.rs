@@ -21,8 +21,8 @@ pub struct Seen<'a> {
 pub struct Standing {
     /// A job runs, or its report is being written.
     pub is_running: bool,
-    /// That job is one by hand, not that of the program.
-    pub is_by_hand: bool,
+    /// That job is the program's, not one by hand or to commission.
+    pub runs_program: bool,
     /// A program is being loaded.
     pub is_loading: bool,
     /// Why the last program was not loaded.
@@ -37,7 +37,7 @@ impl Default for Standing {
     fn default() -> Self {
         Self {
             is_running: false,
-            is_by_hand: false,
+            runs_program: false,
             is_loading: false,
             refused: None,
             last: None,
@@ -63,14 +63,9 @@ impl Seen<'_> {
         self.standing.is_running && !self.live.ended
     }
 
-    /// Whether the job that runs is that of the program.
-    pub fn runs_program(&self) -> bool {
-        self.standing.is_running && !self.standing.is_by_hand
-    }
-
     /// The line of the program that the machine is at; 0 before the first.
     pub fn current_line(&self) -> Option<u32> {
-        let motion = self.live.motion.as_ref().filter(|_| self.runs_program());
+        let motion = self.live.motion.as_ref().filter(|_| self.standing.runs_program);
         motion.map(|motion| motion.line)
     }
 }

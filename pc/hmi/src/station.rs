@@ -1,5 +1,6 @@
 //! The station: what is loaded, the job that runs, and what may be asked of it now.
 
+mod commissioning;
 mod guarded;
 
 use crate::access::Access;
@@ -57,6 +58,8 @@ pub enum Action {
     Teach,
     /// Another machine file.
     Write,
+    /// Motors are measured, or a circle is made.
+    Commission,
 }
 
 /// See the module.
@@ -82,6 +85,7 @@ pub struct Station {
     /// The program begins as soon as it is not any more.
     starts: bool,
     last: Option<Outcome>,
+    commissioned: commissioning::Commissioned,
     access: Access,
     record: Record,
     earlier: Vec<Earlier>,
@@ -107,6 +111,7 @@ impl Station {
             by_hand: None,
             starts: false,
             last: None,
+            commissioned: Default::default(),
             access: Access::default(),
             record,
             earlier,
@@ -149,6 +154,11 @@ impl Station {
         self.last.as_ref()
     }
 
+    /// Whether the job of the program that is loaded runs.
+    pub fn runs_program(&self) -> bool {
+        self.is_running() && self.by_hand.is_none() && !self.is_commissioning()
+    }
+
     /// What there is to see of it.
     pub fn seen(&self) -> Seen<'_> {
         let loaded = self.loaded.as_ref();
@@ -162,7 +172,7 @@ impl Station {
     fn standing(&self) -> Standing {
         Standing {
             is_running: self.running.is_some(),
-            is_by_hand: self.by_hand.is_some(),
+            runs_program: self.runs_program(),
             is_loading: self.loading.is_some(),
             refused: self.refused.clone(),
             last: self.last.as_ref().map(Outcome::ended),
@@ -195,7 +205,9 @@ impl Station {
                 rests && self.loading.is_none()
             }
             Action::Start => self.makes_sense(Action::Load, now) && self.loaded.is_some(),
-            Action::Home | Action::Write => self.running.is_none() && self.loading.is_none(),
+            Action::Home | Action::Write | Action::Commission => {
+                self.running.is_none() && self.loading.is_none()
+            }
             Action::Teach => true,
             Action::ByHand | Action::Off => {
                 heard && self.by_hand.is_some() && self.live.question == Some(Question::ByHand)
@@ -318,11 +330,12 @@ impl Station {
             }
             let by_hand = self.by_hand.take().is_some();
             let mut starts = std::mem::take(&mut self.starts);
-            match running.outcome() {
+            match self.take_commissioned(running.outcome(), now) {
+                None => {}
                 // There is no verdict on what was done by hand; an error is among what happened.
-                Ok(outcome) if by_hand => starts &= outcome.error.is_none(),
-                Ok(outcome) => self.last = Some(outcome),
-                Err(error) => self.live.journal.alarm(now, &sentence(error.as_ref())),
+                Some(Ok(outcome)) if by_hand => starts &= outcome.error.is_none(),
+                Some(Ok(outcome)) => self.last = Some(outcome),
+                Some(Err(error)) => self.live.journal.alarm(now, &sentence(error.as_ref())),
             }
             self.live.ended = true;
             if starts {

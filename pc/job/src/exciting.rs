@@ -2,6 +2,7 @@
 
 use crate::session::{Session, unexpected};
 use crate::{Job, JobError, Weld};
+use commission::CapturedMotion;
 use host_link::events::Phase;
 use shared::io::{MOTOR_AXIS, MOTOR_NAMES};
 use shared::protocol::{CaptureSample, CaptureState, Excitation, ExcitationEnd, Request, Response, Role};
@@ -19,35 +20,24 @@ pub struct ExcitationRun {
     pub excitations: Vec<Excitation>,
 }
 
-/// What was captured of one excitation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CapturedMotion {
-    /// The excitation.
-    pub excitation: Excitation,
-    /// One sample each servo tick.
-    pub samples: Vec<CaptureSample>,
-}
-
 impl Weld {
-    /// Excites the motors of `run` where the machine stands.
+    /// Excites the motors of `run` where the machine stands; what was captured before an error is kept.
     pub(super) fn excite(
-        &self,
+        &mut self,
         session: &mut Session,
         job: &Job,
         run: &ExcitationRun,
-    ) -> Result<Vec<CapturedMotion>, JobError> {
+    ) -> Result<(), JobError> {
         let of = run.excitations.len();
-        let excitations = run.excitations.iter().enumerate();
-        excitations
-            .map(|(index, excitation)| {
-                let motor = MOTOR_NAMES[usize::from(excitation.motor)];
-                let number = index + 1;
-                session.phase(Phase::Exciting { motor, number, of });
-                let excitation = towards_room(session, job, excitation);
-                session.command(Role::Motion, &Request::Excite(excitation))?;
-                captured(session, excitation, motor)
-            })
-            .collect()
+        for (index, excitation) in run.excitations.iter().enumerate() {
+            let motor = MOTOR_NAMES[usize::from(excitation.motor)];
+            let number = index + 1;
+            session.phase(Phase::Exciting { motor, number, of });
+            let excitation = towards_room(session, job, excitation);
+            session.command(Role::Motion, &Request::Excite(excitation))?;
+            self.taught.captured.push(captured(session, excitation, motor)?);
+        }
+        Ok(())
     }
 }
 

@@ -3,6 +3,7 @@
 mod by_hand;
 mod calibrating;
 mod cameras;
+mod circle;
 mod countdown;
 mod delays;
 mod exciting;
@@ -28,8 +29,9 @@ mod waits;
 
 pub use calibrating::{CameraPictures, PictureRun};
 pub use cameras::{Answer, CameraFigures, Moment, PictureSource, SeamCameras};
+pub use circle::{CircularTest, NoCircle, NoTurn, Plane, PlannedCircle, SeenCircle};
 pub use delays::{DelayFigures, Delays};
-pub use exciting::{CapturedMotion, ExcitationRun};
+pub use exciting::ExcitationRun;
 pub use images::{ImageCameras, Images, ImagesError, Sighting, SightingLog, WorkerError};
 pub use joint::SeenSeam;
 pub use leading::LedLesson;
@@ -375,7 +377,7 @@ impl Weld {
             Work::TeachSeam(lesson) => self.teach_seam(session, job, lesson)?,
             Work::Lead(lesson) => self.lead(session, lesson)?,
             Work::ByHand => return self.by_hand(session, job),
-            Work::Excite(run) => self.taught.captured = self.excite(session, job, run)?,
+            Work::Excite(run) => self.excite(session, job, run)?,
             Work::TeachAndMake => {
                 let part = self.teach(session, job)?;
                 let program = self.plan_taught(job, &part)?;

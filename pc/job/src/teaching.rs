@@ -4,7 +4,8 @@
 //! the tool truly is; on a real machine there is nothing to teach with.
 
 use crate::session::Session;
-use crate::{CameraPictures, CapturedMotion, Job, JobError, SeenMarks, TaughtSeam, Weld};
+use crate::{CameraPictures, Job, JobError, SeenMarks, TaughtSeam, Weld};
+use commission::CapturedMotion;
 use config::RangeError;
 use config::machine::MachineFile;
 use config::probe::Reading;
@@ -47,7 +48,7 @@ pub struct Taught {
     pub seam: Option<TaughtSeam>,
     /// Places to which the tip was led.
     pub led: Vec<TipPoint>,
-    /// What was captured of motors that were excited.
+    /// What was captured of motors that were excited, in the order of their excitations.
     pub captured: Vec<CapturedMotion>,
 }
 

@@ -58,6 +58,8 @@ pub(super) struct Panel {
     pub dashed: Vec<Vec<(f64, f64)>>,
     /// Places on the horizontal axis that are marked by a thin line, with what is written there.
     pub places: Vec<(f64, String)>,
+    /// Nothing else is marked there.
+    pub only_places: bool,
     /// A millimetre is as long on both axes.
     pub to_scale: bool,
 }
@@ -119,9 +121,11 @@ fn draw_panel<'a>(area: &Area<'a>, panel: &Panel) -> Result<(), DrawError<'a>> {
         .x_label_area_size(BELOW)
         .y_label_area_size(LEFT)
         .build_cartesian_2d(across.0..across.1, up.0..up.1)?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
+    let mut mesh = chart.configure_mesh();
+    if panel.only_places {
+        mesh.disable_x_mesh().disable_x_axis();
+    }
+    mesh.light_line_style(TRANSPARENT)
         .bold_line_style(BLACK.mix(0.12))
         .x_desc(panel.x)
         .y_desc(panel.y)

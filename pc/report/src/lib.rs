@@ -6,6 +6,7 @@ mod dry_run;
 mod ended;
 mod joint;
 mod log;
+mod motor;
 mod plots;
 mod table;
 pub mod unwelded;
@@ -14,6 +15,7 @@ pub use circle::write_circle;
 pub use dry_run::write_dry_run;
 pub use ended::{Ended, ended};
 pub use log::{LOG, LogColumns, LogWriter};
+pub use motor::write_motor;
 
 use crate::unwelded::Unwelded;
 use evaluate::{JOINT_QUANTITIES, JointFigures, Load, SpeedShares, Switching};

@@ -73,10 +73,21 @@ fn a_machine_whose_loops_swing_welds_when_it_is_commissioned() {
 
     // What was measured, and nothing written, where no file is named.
     let before = std::fs::read_to_string(&machine).expect("it is there");
-    let told = commission(&machine, &["--plant", RINGS, "--motors", "B"]);
+    let plots = folder.path().join("plots");
+    let into = plots.to_str().expect("a path");
+    let told = commission(&machine, &["--plant", RINGS, "--motors", "B", "--report", into]);
     let said = String::from_utf8_lossy(&told.stdout);
     assert_eq!(told.status.code(), Some(0), "{said}");
     assert!(said.contains("before  kp  120.0 1/s  gain margin  -"), "{said}");
+    let plot = std::fs::read_to_string(plots.join("B.svg")).expect("a plot");
+    for shown in [
+        "Speed for a command",
+        "Coherence",
+        "gain margin -2.6 dB, now 8.6 dB",
+        "100 Hz",
+    ] {
+        assert!(plot.contains(shown), "{shown}");
+    }
     assert_eq!(std::fs::read_to_string(&machine).expect("it is there"), before);
 
     let output = machine.to_str().expect("a path");

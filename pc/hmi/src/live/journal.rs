@@ -167,7 +167,8 @@ impl Journal {
         self.add(at, Severity::Waits, What::Question(question.clone()));
     }
 
-    pub(super) fn message(&mut self, at: Duration, text: &str) {
+    /// Something in words of the job or of the program, in English.
+    pub(crate) fn message(&mut self, at: Duration, text: &str) {
         self.add(at, Severity::Note, What::Said(text.to_owned()));
     }
 

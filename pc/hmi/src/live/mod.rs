@@ -98,9 +98,10 @@ impl Live {
                 }
             }
             Event::Phase(phase) => {
+                let goes_on = self.phase.is_some_and(|before| is_same(before, *phase));
                 (self.phase, self.question, self.told) = (Some(*phase), None, None);
                 // A hand that jogs does it a hundred times.
-                if *phase != Phase::Jogging {
+                if *phase != Phase::Jogging && !goes_on {
                     self.journal.phase(now, *phase);
                 }
             }
@@ -160,6 +161,14 @@ impl Live {
     pub fn along_mm(&self) -> Option<f64> {
         let (path, s_mm) = self.place()?;
         self.along.at(path, s_mm)
+    }
+}
+
+/// Whether a motor is excited once more.
+fn is_same(before: Phase, now: Phase) -> bool {
+    match (before, now) {
+        (Phase::Exciting { motor: before, .. }, Phase::Exciting { motor: now, .. }) => before == now,
+        _ => false,
     }
 }
 

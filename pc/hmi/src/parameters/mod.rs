@@ -153,6 +153,11 @@ impl Parameters {
         Ok(())
     }
 
+    /// Has `text` in place of what was changed. Nothing is written yet.
+    pub fn propose(&mut self, text: String) {
+        self.take(text);
+    }
+
     /// The parameter called `key` is as it was loaded.
     pub fn take_back(&mut self, key: &str) {
         if let Some(before) = self.change(key).and_then(|change| change.old.clone()) {

@@ -7,6 +7,7 @@ use crate::station::Station;
 use crate::texts::Text;
 use eframe::egui::{Align, Button, Color32, Direction, Frame, Label, Layout, RichText, Ui, UiBuilder};
 use host_link::Command;
+use host_link::events::Phase;
 use shared::state::State;
 
 /// Width of Stop \[points\].
@@ -58,6 +59,12 @@ fn stop_button(ui: &mut Ui, view: &View, station: &mut Station) {
 pub(super) fn state(ui: &mut Ui, view: &View, seen: &Seen) {
     let live = seen.live;
     let state = live.state().filter(|_| seen.standing.is_running);
+    // The board calls itself idle while it excites a motor, which moves.
+    let excites = matches!(live.phase, Some(Phase::Exciting { .. }));
+    let state = state.map(|state| match state {
+        State::Idle if excites => State::Running,
+        state => state,
+    });
     let (text, fill) = match state {
         None => (view.words.say(Text::NoJob), view.theme.card),
         Some(state) => {

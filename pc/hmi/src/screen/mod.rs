@@ -3,6 +3,7 @@
 mod access;
 mod alarms;
 mod bar;
+mod commission;
 mod jog;
 mod levels;
 mod pages;
@@ -55,6 +56,7 @@ pub struct Screen {
     plot: plot::PlotPage,
     welds: welds::WeldsPage,
     parameters: parameters::ParametersPage,
+    commission: commission::CommissionPage,
     /// Why a PIN was not taken away.
     refused: levels::Refused,
     /// A PIN is being typed, in the place of the page.
@@ -122,6 +124,7 @@ impl Screen {
             plot: plot::PlotPage::default(),
             welds: welds::WeldsPage::default(),
             parameters: parameters::ParametersPage::default(),
+            commission: commission::CommissionPage::default(),
             refused: None,
             pad: None,
             settings,
@@ -180,6 +183,7 @@ impl Screen {
                     self.parameters
                         .show(ui, &view, &mut self.station, self.look.left_handed);
                 }
+                Page::Commission => self.commission.show(ui, &view, &mut self.station),
                 Page::Alarms => alarms::show(ui, &view, &mut self.station),
                 Page::Settings => {
                     // Everything larger is higher than a panel.
@@ -233,6 +237,7 @@ impl Screen {
         match page {
             Page::Welds => self.welds.open(&self.station.place.reports),
             Page::Parameters => self.parameters.open(&self.station),
+            Page::Commission => self.commission.open(&self.station),
             _ => {}
         }
     }

@@ -22,13 +22,15 @@ pub enum Page {
     Welds,
     /// The machine file.
     Parameters,
+    /// Motors and circles.
+    Commission,
     /// The screen itself.
     Settings,
 }
 
 impl Page {
     /// All pages, in the order of their keys.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Run,
         Self::SetUp,
         Self::Teach,
@@ -36,6 +38,7 @@ impl Page {
         Self::Alarms,
         Self::Welds,
         Self::Parameters,
+        Self::Commission,
         Self::Settings,
     ];
 
@@ -49,6 +52,7 @@ impl Page {
             Self::Alarms => Text::Alarms,
             Self::Welds => Text::Welds,
             Self::Parameters => Text::Parameters,
+            Self::Commission => Text::Commission,
             Self::Settings => Text::Settings,
         }
     }

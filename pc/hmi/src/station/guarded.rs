@@ -20,7 +20,7 @@ impl Action {
             | Self::Override
             | Self::Off => Level::Operator,
             Self::Home | Self::ByHand | Self::Jog | Self::Teach => Level::Setter,
-            Self::Write => Level::Engineer,
+            Self::Write | Self::Commission => Level::Engineer,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod access;
 mod bench;
+mod commission;
 mod day;
 mod parameters;
 mod pictures;

@@ -177,7 +177,7 @@ fn a_program_begins_from_a_machine_that_is_operated_by_hand() {
     bench.open(Page::Run);
     bench.tap("Start…");
     bench.tap("Weld now");
-    bench.until("the program's job runs", |station| station.seen().runs_program());
+    bench.until("the program's job runs", |station| station.runs_program());
     bench.tap("STOP");
     bench.until("the job is over", |station| !station.is_running());
 }

@@ -80,7 +80,7 @@ fn places_are_taken_taken_out_and_planned_and_the_seam_is_welded() {
     bench.open(Page::Run);
     bench.tap("Start…");
     bench.tap("Weld now");
-    bench.until("the job runs", |station| station.seen().runs_program());
+    bench.until("the job runs", |station| station.runs_program());
     bench.until("the job is over", |station| !station.is_running());
     assert_eq!(bench.station().last().expect("an outcome").error, None);
 

@@ -236,7 +236,7 @@ fn a_viewer_that_comes_late_sees_what_is_now_and_one_that_loses_the_screen_says_
     assert!(bench.says(service.token.text()) && bench.says(&service.identity.fingerprint()));
     bench.until("the job is over", |station| !station.is_running());
 
-    drop(bench);
+    drop((bench, viewer));
     late.until("it is old", |watcher| {
         watcher
             .watched

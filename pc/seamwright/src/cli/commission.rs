@@ -5,27 +5,14 @@ use crate::console::outln;
 use crate::terminal::Operator;
 use anyhow::{Context, bail};
 use clap::Args;
-use commission::{
-    Capture, Loop, Margins, NoFriction, Planned, Requirements, Response, SETTLE_PERIODS, TRAVEL, TURNS_HZ,
-    WAY, design, friction, plan, rewrite, turns,
-};
+use commission::{CapturedMotion, Found, Margins, excitations, measured, rewrite, softened};
 use config::machine::MachineFile;
-use job::{CapturedMotion, ExcitationRun, Work};
-use shared::control::FrictionConfig;
+use job::{ExcitationRun, Work};
+use report::{prepare, write_motor};
 use shared::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use shared::kinematics::AXIS_UNIT;
-use shared::protocol::{Excitation, Excited};
 use std::path::PathBuf;
 use std::process::ExitCode;
-
-/// Part of the acceleration of an axis that an excitation uses.
-const OF_ACCELERATION: f64 = 0.5;
-/// Part of its proportional gains with which a machine is measured.
-const SOFTENED: f64 = 0.25;
-/// Part of the skew that trips a gantry.
-const OF_SKEW: f64 = 0.5;
-/// Part of the speed of an axis that ends one.
-const OF_SPEED: f64 = 0.9;
 
 /// The machine homes. Each motor then goes 20 mm (20°) there and back, twelve times, while its drive is shaken by up to
 /// 1 mm; from what its grating tells come gain and delay of the drive, and the highest gains with a gain margin of 6 dB, a phase
@@ -45,6 +32,9 @@ pub struct Commission {
     /// only told]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// Folder for a plot (SVG) of each motor: its response with its coherence, its open loop before and now [default: none is drawn]
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
 }
 
 impl Commission {
@@ -60,12 +50,18 @@ impl Commission {
                 bail!("cannot write {}: there is no such folder", output.display());
             }
         }
+        if let Some(report) = &self.report {
+            prepare(report)?;
+        }
         let excitations = motors
             .iter()
-            .flat_map(|motor| excitations(&machine, *motor))
+            .flat_map(|motor| excitations(&machine.motion, *motor))
             .collect();
         let run = ExcitationRun { excitations };
-        let softened = softened(&machine);
+        let softened = MachineFile {
+            motion: softened(&machine.motion),
+            ..machine.clone()
+        };
         let of = (&softened, &*self.machine);
         let job = self
             .boards
@@ -113,13 +109,21 @@ impl Commission {
         let mut refused = Vec::new();
         for motor in motors {
             let name = MOTOR_NAMES[*motor];
-            match loop_of(machine, *motor, captured) {
+            let before = machine.motion.motors[*motor].as_ref();
+            let found = Found::of(before, *motor, captured);
+            if let (Some(report), Some(before)) = (&self.report, before) {
+                let plot = report.join(format!("{name}.svg"));
+                let title = format!("{name}: {}", self.machine.display());
+                let lines = measured(before, *motor, captured).unwrap_or_default();
+                write_motor(&plot, &title, &lines, found.as_ref().ok())?;
+            }
+            match found {
                 Ok(found) => {
                     tell(name, machine, *motor, &found);
                     text = rewrite(&text, name, &found.of_loop).with_context(file)?;
                 }
                 Err(error) => {
-                    outln!("{name}: left as it is: {error:#}");
+                    outln!("{name}: left as it is: {error}");
                     refused.push(name);
                 }
             }
@@ -137,94 +141,6 @@ impl Commission {
     }
 }
 
-/// The machine with loops that are too slow to ring, whatever its gains are: in a loop that swings by itself nothing is measured.
-fn softened(machine: &MachineFile) -> MachineFile {
-    let mut softened = machine.clone();
-    for motor in softened.motion.motors.iter_mut().flatten() {
-        motor.kp *= SOFTENED;
-        motor.ki *= SOFTENED * SOFTENED;
-        motor.kd = 0.0;
-    }
-    softened
-}
-
-/// What motor `index` is told.
-fn excitations(machine: &MachineFile, index: usize) -> Vec<Excitation> {
-    let axis = machine.motion.axes[MOTOR_AXIS[index]].as_ref();
-    let (speed, acceleration) = axis.map_or((0.0, 0.0), |axis| (axis.max_velocity, axis.max_acceleration));
-    // To one side there is half of the travel at least.
-    let room = axis.map_or(0.0, |axis| {
-        (axis.travel_max - axis.travel_min) / 2.0 - 2.0 * TRAVEL
-    });
-    let way = WAY.min(room).max(0.0);
-    let (speed, acceleration) = (OF_SPEED * speed, OF_ACCELERATION * acceleration);
-    let turning = Excitation {
-        motor: index as u8,
-        excited: Excited::Reference,
-        amplitude: turns(speed, acceleration).min(askew(machine, index)),
-        from_hz: TURNS_HZ,
-        to_hz: TURNS_HZ,
-        settle_periods: SETTLE_PERIODS,
-        way: 0.0,
-        max_travel: TRAVEL,
-        max_speed: speed,
-    };
-    let on_the_way = plan(way, acceleration).into_iter().map(|planned| Excitation {
-        excited: Excited::Command,
-        amplitude: planned.amplitude,
-        from_hz: planned.from_hz,
-        to_hz: planned.to_hz,
-        way,
-        ..turning
-    });
-    on_the_way.chain([turning]).collect()
-}
-
-/// How far motor `index` may go to either side of where it stands alone (mm or °): of a gantry, without tripping its skew.
-fn askew(machine: &MachineFile, index: usize) -> f64 {
-    match &machine.motion.gantry {
-        Some(gantry) if MOTOR_AXIS[index] == MOTOR_AXIS[0] => OF_SKEW * gantry.skew_trip_mm,
-        _ => f64::INFINITY,
-    }
-}
-
-/// What was found of a motor; its friction, or why that stays as it was.
-struct Found {
-    of_loop: Loop,
-    friction: Result<FrictionConfig, NoFriction>,
-}
-
-fn loop_of(machine: &MachineFile, index: usize, captured: &[CapturedMotion]) -> anyhow::Result<Found> {
-    let motor = machine.motion.motors[index]
-        .as_ref()
-        .context("the machine has none")?;
-    let own = captured
-        .iter()
-        .filter(|captured| usize::from(captured.excitation.motor) == index);
-    let (on_the_way, turning): (Vec<_>, Vec<_>) =
-        own.partition(|captured| captured.excitation.excited == Excited::Command);
-    let captures: Vec<_> = on_the_way
-        .into_iter()
-        .map(|captured| Capture {
-            planned: Planned {
-                from_hz: captured.excitation.from_hz,
-                to_hz: captured.excitation.to_hz,
-                amplitude: captured.excitation.amplitude,
-            },
-            way: captured.excitation.way,
-            samples: captured.samples.clone(),
-        })
-        .collect();
-    let response = Response::of(&captures, motor)?;
-    let mut of_loop = design(&response, motor, &Requirements::default())?;
-    let samples = turning.first().map_or(&[][..], |captured| &captured.samples);
-    let friction = friction(&response, samples, motor, of_loop.lag.delay_s);
-    if let Ok(found) = &friction {
-        of_loop.motor.friction = Some(*found);
-    }
-    Ok(Found { of_loop, friction })
-}
-
 fn tell(
     name: &str,
     machine: &MachineFile,
@@ -232,6 +148,7 @@ fn tell(
     Found {
         of_loop: found,
         friction,
+        ..
     }: &Found,
 ) {
     let before = machine.motion.motors[index]

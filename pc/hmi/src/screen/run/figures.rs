@@ -48,7 +48,7 @@ fn told(seen: &Seen, drawn: &Drawn) -> [(Text, String); 5] {
         .as_ref()
         .filter(|motion| motion.line > 0)
         .map(|motion| motion.line.to_string());
-    let (time, seconds) = match live.place().filter(|_| seen.runs_program()) {
+    let (time, seconds) = match live.place().filter(|_| seen.standing.runs_program) {
         Some((path, s_mm)) => (
             Text::Remaining,
             drawn.remaining_s(path, s_mm) / (seen.standing.override_percent / 100.0).max(0.01),

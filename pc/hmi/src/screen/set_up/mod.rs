@@ -70,7 +70,7 @@ impl SetUpPage {
         if !station.allows(Action::Home) {
             let text = RichText::new(access::needs(view, Action::Home)).color(view.theme.doubt);
             ui.add(Label::new(text).wrap());
-        } else if station.seen().runs_program() {
+        } else if station.runs_program() {
             ui.add(Label::new(view.words.say(Text::ProgramRuns)).wrap());
         }
     }
