@@ -20,7 +20,7 @@ Runs both firmware images on models of the NUCLEO-H723ZG, writes FOLDER/session.
 input ends or, with --ms, after that much time of the boards. It fails if anything was found.
 
     --machine  what the motion board is wired to, by the name of its kinematics
-    --plant    what is true of it: a plant file, draw:usual:SEED or draw:poor:SEED
+    --plant    what is true of it: a plant file, draw:usual:SEED, draw:poor:SEED or draw:bad:SEED
     --folder   where session and pace are written; default: virtual-nucleo in the folder for temporary files
     --rate     the boards' time per wall time at most; default 1
     --vcd      records what leaves every pin of both boards, from reset on: 0, 1, z floating, x a peripheral's

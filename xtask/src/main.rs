@@ -62,7 +62,7 @@ enum Task {
         /// Machine file: the motion board is wired to its machine; the dual-beam gantry if none is given
         #[arg(long, value_name = "FILE")]
         machine: Option<PathBuf>,
-        /// What is true of that machine: a plant file, or draw:usual:SEED or draw:poor:SEED; as shipped if nothing is given
+        /// What is true of that machine: a plant file, or draw:usual:SEED, draw:poor:SEED or draw:bad:SEED; as shipped if nothing is given
         #[arg(long, value_name = "PLANT")]
         plant: Option<PlantChoice>,
     },

@@ -4,7 +4,7 @@ use crate::Complex;
 use crate::controller::{filters, pid};
 use crate::lag::Lag;
 use crate::margins::Margins;
-use crate::response::Response;
+use crate::response::{Line, Response};
 use shared::control::{MotorConfig, NOTCHES, NotchConfig};
 use shared::motion::Chirp;
 use shared::parameter::ParameterError;
@@ -34,6 +34,9 @@ pub struct Requirements {
     pub phase_deg: f64,
     /// Largest peak of the sensitivity.
     pub peak: f64,
+    /// Cross-coupling of a gantry to a partner of the same kind, as a part of the proportional gain, with which it grows. The
+    /// margins are kept with both motors going the same way and against each other.
+    pub coupling: f64,
 }
 
 impl Default for Requirements {
@@ -43,6 +46,7 @@ impl Default for Requirements {
             gain_db: 6.0,
             phase_deg: 45.0,
             peak: 2.0,
+            coupling: 0.0,
         }
     }
 }
@@ -91,7 +95,7 @@ pub fn design(
     motor: &MotorConfig,
     requirements: &Requirements,
 ) -> Result<Loop, NoDesign> {
-    let before = Margins::of(&open_loop(response, motor)?);
+    let before = margins_of(&open_loops(response, motor, requirements.coupling)?, 1.0);
     let lag = Lag::of(response).ok_or(NoDesign::NoLag)?;
     // Commands are those of a drive whose gain is right from here on.
     let mut bare = motor.clone();
@@ -101,7 +105,7 @@ pub fn design(
     let mut best = with_highest_gain(&response, &bare, requirements)?;
     for _ in 0..NOTCHES {
         let base = best.as_ref().map_or(&bare, |(motor, _)| motor).clone();
-        let Some(resonance) = Resonance::highest(&response, &base)? else {
+        let Some((_, resonance)) = Resonance::highest(&response, &base)? else {
             break;
         };
         let mut better = None;
@@ -133,12 +137,34 @@ pub fn design(
     })
 }
 
+/// Where what moves swings so that not even a proportional gain of `kp` keeps a gain margin of 6 dB \[Hz\], without notches; none if
+/// it is not that.
+///
+/// # Errors
+/// A parameter of the motor is out of range.
+pub fn least_gain(response: &Response, motor: &MotorConfig, kp: f64) -> Result<Option<f64>, ParameterError> {
+    let mut bare = motor.with_gain(kp);
+    bare.notches.clear();
+    let least = 10_f64.powf(-Requirements::default().gain_db / 20.0);
+    let highest = Resonance::highest(response, &bare)?;
+    Ok(highest
+        .filter(|(gain, _)| *gain >= least)
+        .map(|(_, resonance)| resonance.hz))
+}
+
 impl Response {
     /// The same of a drive whose commands count for so much more.
     pub(crate) fn of_gain(&self, factor: f64) -> Self {
         let mut scaled = self.clone();
-        scaled.lines.iter_mut().for_each(|line| line.gain *= factor);
+        let lines = scaled.lines.iter_mut().chain(&mut scaled.at_rest);
+        lines.for_each(|line| line.gain *= factor);
         scaled
+    }
+
+    /// Lines of the motor under way, and at rest if they are known.
+    fn states(&self) -> impl Iterator<Item = &[Line]> {
+        let at_rest = Some(&*self.at_rest).filter(|lines| !lines.is_empty());
+        std::iter::once(&*self.lines).chain(at_rest)
     }
 }
 
@@ -153,18 +179,49 @@ fn higher(
     }
 }
 
-/// The open loop of `motor` about a response, at its lines \[Hz\].
-pub(crate) fn open_loop(
+/// The open loops of `motor` that have to keep the margins, that under way first.
+fn open_loops(
     response: &Response,
     motor: &MotorConfig,
-) -> Result<Vec<(f64, Complex)>, ParameterError> {
+    coupling: f64,
+) -> Result<Vec<Vec<(f64, Complex)>>, ParameterError> {
     let filters = filters(motor)?;
-    Ok(loop_of(response, |hz| pid(motor, hz) * filters[number(hz)]))
+    // Motors that go against each other see the coupling twice.
+    let couplings = [0.0, 2.0 * coupling * motor.kp];
+    let couplings = couplings.iter().take(if coupling > 0.0 { 2 } else { 1 });
+    Ok(response
+        .states()
+        .flat_map(|lines| couplings.clone().map(move |coupling| (lines, coupling)))
+        .map(|(lines, coupling)| open_loop(lines, |hz| (pid(motor, hz) + coupling) * filters[number(hz)]))
+        .collect())
 }
 
-fn loop_of(response: &Response, controller: impl Fn(f64) -> Complex) -> Vec<(f64, Complex)> {
-    let lines = response.lines.iter();
+/// The worst margins of open loops with so much more gain.
+fn margins_of(open_loops: &[Vec<(f64, Complex)>], gain: f64) -> Margins {
+    let margins = open_loops.iter().map(|open_loop| {
+        let scaled: Vec<_> = open_loop.iter().map(|(hz, value)| (*hz, value * gain)).collect();
+        Margins::of(&scaled)
+    });
+    margins
+        .reduce(|worst, margins| worst.or_worse(&margins))
+        .unwrap_or_else(|| Margins::of(&[]))
+}
+
+/// Of the open loops of `motor` that have to keep the margins, at their lines \[Hz\], the one with the highest peak of the sensitivity.
+pub(crate) fn worst_loop(
+    response: &Response,
+    motor: &MotorConfig,
+    coupling: f64,
+) -> Result<Vec<(f64, Complex)>, ParameterError> {
+    let loops = open_loops(response, motor, coupling)?;
+    let peak = |open_loop: &Vec<(f64, Complex)>| Margins::of(open_loop).peak;
+    let worst = loops.into_iter().max_by(|a, b| peak(a).total_cmp(&peak(b)));
+    Ok(worst.unwrap_or_default())
+}
+
+fn open_loop(lines: &[Line], controller: impl Fn(f64) -> Complex) -> Vec<(f64, Complex)> {
     lines
+        .iter()
         .map(|line| (line.hz, controller(line.hz) * line.gain))
         .collect()
 }
@@ -180,19 +237,12 @@ fn with_highest_gain(
     motor: &MotorConfig,
     requirements: &Requirements,
 ) -> Result<Option<(MotorConfig, Margins)>, ParameterError> {
-    let filters = filters(motor)?;
     // All parts of the controller grow with the proportional gain.
-    let unit = motor.with_gain(1.0);
-    let shape = loop_of(response, |hz| pid(&unit, hz) * filters[number(hz)]);
+    let shapes = open_loops(response, &motor.with_gain(1.0), requirements.coupling)?;
     let mut best = None;
     let mut kp = LEAST_KP;
     while kp <= MOST_KP {
-        let margins = Margins::of(
-            &shape
-                .iter()
-                .map(|(hz, value)| (*hz, value * kp))
-                .collect::<Vec<_>>(),
-        );
+        let margins = margins_of(&shapes, kp);
         // With a small gain the integral part is fast against the loop.
         match (requirements.are_kept(&margins), &best) {
             (true, _) => best = Some((motor.with_gain(kp), margins)),
@@ -230,9 +280,17 @@ struct Resonance {
 }
 
 impl Resonance {
-    /// That with the highest open-loop gain of those that stand out, behind the notches of `motor`.
-    fn highest(response: &Response, motor: &MotorConfig) -> Result<Option<Self>, ParameterError> {
-        let gains = open_loop(response, motor)?;
+    /// That with the highest open-loop gain of those that stand out, behind the notches of `motor`, and that gain.
+    fn highest(response: &Response, motor: &MotorConfig) -> Result<Option<(f64, Self)>, ParameterError> {
+        let filters = filters(motor)?;
+        let found = response
+            .states()
+            .filter_map(|lines| Self::of(&open_loop(lines, |hz| pid(motor, hz) * filters[number(hz)])));
+        Ok(found.max_by(|(a, _), (b, _)| a.total_cmp(b)))
+    }
+
+    /// The highest of one open loop, with its gain.
+    fn of(gains: &[(f64, Complex)]) -> Option<(f64, Self)> {
         let near = |hz: f64, ratio: f64| {
             let found = gains.iter().min_by(|(a, _), (b, _)| {
                 let off = |at: f64| (at - hz * ratio).abs();
@@ -255,8 +313,7 @@ impl Resonance {
                 },
             ))
         });
-        let highest = peaks.max_by(|(a, _), (b, _)| a.total_cmp(b));
-        Ok(highest.map(|(_, resonance)| resonance))
+        peaks.max_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
     fn notch(&self, damping: f64) -> NotchConfig {

@@ -1,7 +1,8 @@
 //! What the motors of a machine are told, to be measured.
 
-use crate::plan::{SETTLE_PERIODS, TRAVEL, TURNS_HZ, WAY, plan, turns};
+use crate::plan::{Planned, SETTLE_PERIODS, TRAVEL, TURNS_HZ, WAY, plan, plan_at_rest, swing, turns};
 use shared::config::MotionConfig;
+use shared::control::GantryConfig;
 use shared::io::MOTOR_AXIS;
 use shared::protocol::{CaptureSample, Excitation, Excited};
 
@@ -31,10 +32,15 @@ pub fn softened(machine: &MotionConfig) -> MotionConfig {
         motor.ki *= SOFTENED * SOFTENED;
         motor.kd = 0.0;
     }
+    if let Some(gantry) = &mut softened.gantry {
+        gantry.coupling *= SOFTENED;
+        gantry.coupling_derivative = 0.0;
+    }
     softened
 }
 
-/// What the motor with this `index` is told, in its order; the last one has it turn round.
+/// What the motor with this `index` is told, in its order: chirps on its way, a swing in which it turns round, chirps at rest, and a
+/// sine on its way that asks for the acceleration of its axis.
 pub fn excitations(machine: &MotionConfig, index: usize) -> Vec<Excitation> {
     let axis = machine.axes[MOTOR_AXIS[index]].as_ref();
     let (speed, acceleration) = axis.map_or((0.0, 0.0), |axis| (axis.max_velocity, axis.max_acceleration));
@@ -43,6 +49,7 @@ pub fn excitations(machine: &MotionConfig, index: usize) -> Vec<Excitation> {
         (axis.travel_max - axis.travel_min) / 2.0 - 2.0 * TRAVEL
     });
     let way = WAY.min(room).max(0.0);
+    let full = acceleration;
     let (speed, acceleration) = (OF_SPEED * speed, OF_ACCELERATION * acceleration);
     let turning = Excitation {
         motor: index as u8,
@@ -55,21 +62,52 @@ pub fn excitations(machine: &MotionConfig, index: usize) -> Vec<Excitation> {
         max_travel: TRAVEL,
         max_speed: speed,
     };
-    let on_the_way = plan(way, acceleration).into_iter().map(|planned| Excitation {
+    let shaken = |planned: Planned, way| Excitation {
         excited: Excited::Command,
         amplitude: planned.amplitude,
         from_hz: planned.from_hz,
         to_hz: planned.to_hz,
         way,
         ..turning
-    });
-    on_the_way.chain([turning]).collect()
+    };
+    let motor = machine.motors[index].as_ref();
+    let at_rest = motor.map(|motor| plan_at_rest(motor.counts_per_unit, acceleration));
+    let at_rest = at_rest.into_iter().flatten().map(|planned| shaken(planned, 0.0));
+    let on_the_way = plan(way, acceleration)
+        .into_iter()
+        .map(|planned| shaken(planned, way));
+    on_the_way
+        .chain([turning])
+        .chain(at_rest)
+        .chain([shaken(swing(way.abs().max(TRAVEL), full), way)])
+        .collect()
 }
 
 /// How far motor `index` may go to either side of where it stands alone (mm or °): of a gantry, without tripping its skew.
 fn askew(machine: &MotionConfig, index: usize) -> f64 {
-    match &machine.gantry {
-        Some(gantry) if MOTOR_AXIS[index] == MOTOR_AXIS[0] => OF_SKEW * gantry.skew_trip_mm,
-        _ => f64::INFINITY,
-    }
+    gantry(machine, index).map_or(f64::INFINITY, |gantry| OF_SKEW * gantry.skew_trip_mm)
+}
+
+/// The gantry, if the motor with this `index` is one of its two.
+fn gantry(machine: &MotionConfig, index: usize) -> Option<&GantryConfig> {
+    machine
+        .gantry
+        .as_ref()
+        .filter(|_| MOTOR_AXIS[index] == MOTOR_AXIS[0])
+}
+
+/// The lesser proportional gain of the motors of a gantry, where one of `kp` \[1/s\] stands for what the machine has.
+pub(crate) fn least_kp(machine: &MotionConfig, kp: impl Fn(usize) -> Option<f64>) -> f64 {
+    let motors = machine
+        .motors
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| gantry(machine, *index).is_some());
+    let gains = motors.filter_map(|(index, motor)| kp(index).or(Some(motor.as_ref()?.kp)));
+    gains.fold(f64::INFINITY, f64::min)
+}
+
+/// Cross-coupling of the motor with this `index` to its partner, as a part of the lesser proportional gain of both; 0 without a partner.
+pub(crate) fn coupling(machine: &MotionConfig, index: usize) -> f64 {
+    gantry(machine, index).map_or(0.0, |gantry| gantry.coupling / least_kp(machine, |_| None))
 }

@@ -1,14 +1,22 @@
 //! What the captures of a motor tell of its loop.
 
 use crate::Complex;
-use crate::design::{Loop, NoDesign, Requirements, design, open_loop};
-use crate::excitations::CapturedMotion;
+use crate::design::{Loop, NoDesign, Requirements, design, worst_loop};
+use crate::excitations::{CapturedMotion, coupling};
 use crate::friction::{NoFriction, friction};
 use crate::plan::Planned;
+use crate::refusal::{Measured, Refusal};
 use crate::response::{Capture, Line, NoResponse, Response};
+use shared::config::MotionConfig;
 use shared::control::{FrictionConfig, MotorConfig};
+use shared::io::MOTOR_AXIS;
+use shared::kinematics::AXIS_UNIT;
+use shared::parameter::ParameterError;
 use shared::protocol::Excited;
 use thiserror::Error;
+
+/// How far the tool is from a rotary axis \[mm\], for what a motor costs it.
+const ARM_MM: f64 = 500.0;
 
 /// What was found of a motor.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +25,8 @@ pub struct Found {
     pub of_loop: Loop,
     /// Its friction, or why that stays as it was.
     pub friction: Result<FrictionConfig, NoFriction>,
-    /// Its open loop at the lines that are believed \[Hz\], with the parameters of before, and now.
+    /// Its open loop at the lines that are believed \[Hz\], with the parameters of before, and now: of those that have to keep the
+    /// margins (under way, at rest, with the gantry's motors against each other) the one with the highest peak of the sensitivity.
     pub open_loops: [Vec<(f64, Complex)>; 2],
 }
 
@@ -30,33 +39,77 @@ pub enum NotFound {
     /// Its response is not believed.
     #[error(transparent)]
     Response(#[from] NoResponse),
+    /// It has to be seen to first.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
     /// No loop has the margins on it.
     #[error(transparent)]
     Design(#[from] NoDesign),
 }
 
+impl From<ParameterError> for NotFound {
+    fn from(error: ParameterError) -> Self {
+        Self::Design(error.into())
+    }
+}
+
 impl Found {
-    /// Of the motor with this `index`, whose parameters are those of `motor`; what was captured of others is left aside.
+    /// Of the motor with this `index` of `machine`, whose parameters are those of `motor`; what was captured of others is left aside.
     ///
     /// # Errors
     /// Why it is left as it is.
     pub fn of(
+        machine: &MotionConfig,
         motor: Option<&MotorConfig>,
         index: usize,
         captured: &[CapturedMotion],
     ) -> Result<Self, NotFound> {
         let motor = motor.ok_or(NotFound::NoMotor)?;
-        let response = Response::of(&on_the_way(index, captured), motor)?;
-        let mut of_loop = design(&response, motor, &Requirements::default())?;
+        let requirements = Requirements {
+            coupling: coupling(machine, index),
+            ..Requirements::default()
+        };
+        let captures = chirps(index, captured);
+        let turning = own(index, captured).find(|captured| captured.excitation.excited == Excited::Reference);
+        let turning = turning.map_or(&[][..], |captured| &captured.samples);
+        let swung = own(index, captured).find(|captured| is_sine(captured));
+        let response = Response::of(&captures, motor);
+        let designed = response
+            .as_ref()
+            .map_err(Clone::clone)
+            .map(|response| design(response, motor, &requirements));
+        let found = designed.as_ref().ok().and_then(|designed| designed.as_ref().ok());
+        let friction = match (&response, found) {
+            (Ok(response), found) => {
+                let delay_s = found.map_or(0.0, |found| found.lag.delay_s);
+                friction(response, turning, motor, delay_s)
+            }
+            (Err(_), _) => Err(NoFriction::NoResponse),
+        };
+        let resting = captures.iter().find(|capture| capture.way == 0.0);
+        let unit = AXIS_UNIT[MOTOR_AXIS[index]];
+        let measured = Measured {
+            motor,
+            response: response.as_ref().ok(),
+            designed: found,
+            turning,
+            friction: friction.as_ref().ok(),
+            swung: swung.map(|captured| (captured.excitation.from_hz, &*captured.samples)),
+            resting: resting.map_or(&[], |capture| &capture.samples),
+            // A degree of a rotary axis, seen at the end of its arm.
+            tool_mm: if unit == 1.0 { 1.0 } else { unit * ARM_MM },
+        };
+        if let Some(refusal) = measured.refusal()? {
+            return Err(refusal.into());
+        }
+        let mut of_loop = designed??;
+        let response = response?;
         // Commands count for what the drive makes of them.
         let now = response.of_gain(1.0 / of_loop.lag.gain);
         let open_loops = [
-            open_loop(&response, motor).map_err(NoDesign::from)?,
-            open_loop(&now, &of_loop.motor).map_err(NoDesign::from)?,
+            worst_loop(&response, motor, requirements.coupling)?,
+            worst_loop(&now, &of_loop.motor, requirements.coupling)?,
         ];
-        let turning = own(index, captured).find(|captured| captured.excitation.excited == Excited::Reference);
-        let samples = turning.map_or(&[][..], |captured| &captured.samples);
-        let friction = friction(&response, samples, motor, of_loop.lag.delay_s);
         if let Ok(found) = &friction {
             of_loop.motor.friction = Some(*found);
         }
@@ -77,7 +130,7 @@ pub fn measured(
     index: usize,
     captured: &[CapturedMotion],
 ) -> Result<Vec<Line>, NoResponse> {
-    Line::of(&on_the_way(index, captured), motor)
+    Line::of(&chirps(index, captured), motor)
 }
 
 fn own(index: usize, captured: &[CapturedMotion]) -> impl Iterator<Item = &CapturedMotion> {
@@ -85,10 +138,16 @@ fn own(index: usize, captured: &[CapturedMotion]) -> impl Iterator<Item = &Captu
     captured.iter().filter(is_own)
 }
 
-/// Captures of the motor with this `index` on its way.
-fn on_the_way(index: usize, captured: &[CapturedMotion]) -> Vec<Capture> {
+/// Whether the command was a sine. A single line is no response.
+fn is_sine(captured: &CapturedMotion) -> bool {
+    let told = &captured.excitation;
+    told.excited == Excited::Command && told.from_hz == told.to_hz
+}
+
+/// Captures of the motor with this `index` whose commands were chirps.
+fn chirps(index: usize, captured: &[CapturedMotion]) -> Vec<Capture> {
     own(index, captured)
-        .filter(|captured| captured.excitation.excited == Excited::Command)
+        .filter(|captured| captured.excitation.excited == Excited::Command && !is_sine(captured))
         .map(capture)
         .collect()
 }

@@ -65,25 +65,7 @@ pub fn friction(
     if samples.len() != CAPTURE_TICKS {
         return Err(NoFriction::Empty);
     }
-    let command = samples
-        .iter()
-        .map(|sample| DacCode(sample.command).ratio() * motor.velocity_at_10v);
-    let position = samples
-        .iter()
-        .map(|sample| f64::from(sample.counts) / motor.counts_per_unit);
-    let (command, position) = (spectrum(command), spectrum(position));
-    let number = |hz: f64| (hz / Chirp::LINE_HZ).round() as usize;
-    let seen: Vec<_> = response
-        .lines
-        .iter()
-        .map(|line| (number(line.hz), line.gain))
-        .filter(|(number, _)| LINES.contains(number))
-        .map(|(number, gain)| Seen {
-            number,
-            early: gain * Complex::from_polar(1.0, omega(number) * delay_s.max(0.0)),
-            unexplained: position[number] - gain * command[number],
-        })
-        .collect();
+    let (seen, position) = seen(response, samples, motor, delay_s);
     if seen.len() < FEWEST {
         return Err(NoFriction::NoResponse);
     }
@@ -122,6 +104,65 @@ pub fn friction(
     }
 }
 
+/// What is left of what a capture shows beside the response when `friction` is told beside the command, by the number of the line.
+///
+/// # Errors
+/// A parameter is out of range.
+pub fn left(
+    response: &Response,
+    samples: &[CaptureSample],
+    motor: &MotorConfig,
+    friction: Option<&FrictionConfig>,
+) -> Result<Vec<(usize, Complex)>, ParameterError> {
+    let delay_s = friction.map_or(0.0, |friction| friction.lead_s);
+    let (seen, position) = seen(response, samples, motor, delay_s);
+    let told = friction.map(|friction| {
+        let late = FrictionConfig {
+            lead_s: 0.0,
+            ..*friction
+        };
+        added(&late, &speed(&position))
+    });
+    let told = told.transpose()?;
+    let made = |seen: &Seen| {
+        told.as_ref()
+            .map_or(Complex::default(), |told| seen.early * told[seen.number])
+    };
+    Ok(seen
+        .iter()
+        .map(|seen| (seen.number, seen.unexplained + made(seen)))
+        .collect())
+}
+
+/// What a whole capture shows at the lines of the response, and the spectrum of its position.
+fn seen(
+    response: &Response,
+    samples: &[CaptureSample],
+    motor: &MotorConfig,
+    delay_s: f64,
+) -> (Vec<Seen>, Vec<Complex>) {
+    let command = samples
+        .iter()
+        .map(|sample| DacCode(sample.command).ratio() * motor.velocity_at_10v);
+    let position = samples
+        .iter()
+        .map(|sample| f64::from(sample.counts) / motor.counts_per_unit);
+    let (command, position) = (spectrum(command), spectrum(position));
+    let number = |hz: f64| (hz / Chirp::LINE_HZ).round() as usize;
+    let seen = response
+        .lines
+        .iter()
+        .map(|line| (number(line.hz), line.gain))
+        .filter(|(number, _)| LINES.contains(number))
+        .map(|(number, gain)| Seen {
+            number,
+            early: gain * Complex::from_polar(1.0, omega(number) * delay_s.max(0.0)),
+            unexplained: position[number] - gain * command[number],
+        })
+        .collect();
+    (seen, position)
+}
+
 /// A line of the capture.
 struct Seen {
     number: usize,
@@ -142,9 +183,13 @@ fn steps([least, most]: [f64; 2]) -> impl Iterator<Item = f64> {
 
 /// The speed of the motor, of the first lines of its position.
 fn speed(position: &[Complex]) -> Vec<f64> {
+    over_time((1..=MOTION_LINES).map(|number| (number, position[number] * Complex::i() * omega(number))))
+}
+
+/// The values of a capture with these lines.
+pub fn over_time(lines: impl Iterator<Item = (usize, Complex)>) -> Vec<f64> {
     let mut values = vec![Complex::default(); CAPTURE_TICKS];
-    for number in 1..=MOTION_LINES {
-        let value = position[number] * Complex::i() * omega(number);
+    for (number, value) in lines {
         values[number] = value;
         values[CAPTURE_TICKS - number] = value.conj();
     }

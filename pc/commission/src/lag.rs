@@ -1,12 +1,13 @@
 //! Gain and delay of a drive, for its feed-forward.
 
 use crate::response::Response;
+use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::TAU;
 
-/// Up to here a drive is its gain and its delay \[Hz\]: resonances lie above.
-const SLOW_HZ: f64 = 16.0;
+/// Up to here a drive with what it moves is a fraction of low order \[Hz\]: resonances lie above.
+const SLOW_HZ: f64 = 20.0;
 /// Fewest lines for both.
-const FEWEST: usize = 5;
+const FEWEST: usize = 6;
 
 /// A slow command comes out as `gain` times itself, `delay_s` later.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,38 +19,43 @@ pub struct Lag {
 }
 
 impl Lag {
-    /// Of the slow lines, where jω·P = K·(1 + aω²)·exp(−jω·(τ + bω²)): K and τ are what a constant speed sees, the other two are
-    /// the beginning of what the drive does to a fast one. None if there are too few lines.
+    /// Of the slow lines, where |jω·P|² = K²·(1 + a₁ω²)/(1 + b₁ω² + b₂ω⁴), which a PI loop on the speed of a rigid body is, and
+    /// arg(jω·P) = −(τω + c₃ω³ + c₅ω⁵ + c₇ω⁷): K and τ are what a constant speed and a constant acceleration see. None if there
+    /// are too few lines.
     pub fn of(response: &Response) -> Option<Self> {
         let slow = response.lines.iter().filter(|line| line.hz <= SLOW_HZ);
+        // In units of the highest, so that all powers are of one size.
         let speeds: Vec<_> = slow
             .map(|line| {
-                let omega = TAU * line.hz;
                 // j·P turns it by a quarter turn.
-                (omega, omega * crate::Complex::i() * line.gain)
+                let speed = TAU * line.hz * crate::Complex::i() * line.gain;
+                (line.hz / SLOW_HZ, speed)
             })
             .collect();
         if speeds.len() < FEWEST {
             return None;
         }
-        let of = |value: &dyn Fn(&(f64, crate::Complex)) -> [f64; 3]| least_squares(speeds.iter().map(value));
-        Some(Self {
-            gain: of(&|(omega, speed)| [1.0, omega * omega, speed.norm()])?,
-            delay_s: of(&|(omega, speed)| [*omega, omega * omega * omega, -speed.arg()])?,
+        let square = least_squares(speeds.iter().map(|(part, speed)| {
+            let (x, square) = (part * part, speed.norm_sqr());
+            (Vector4::new(1.0, x, -square * x, -square * x * x), square)
+        }))?;
+        let phase = least_squares(speeds.iter().map(|(part, speed)| {
+            let odd = |term: usize, _| part.powi(2 * term as i32 + 1);
+            (Vector4::from_fn(odd), -speed.arg())
+        }))?;
+        (square > 0.0).then(|| Self {
+            gain: square.sqrt(),
+            delay_s: phase / (TAU * SLOW_HZ),
         })
     }
 }
 
-/// The factor of `x` in y = c·x + d·z with the least squares of the differences, of triples x, z, y.
-fn least_squares(triples: impl Iterator<Item = [f64; 3]>) -> Option<f64> {
-    let [mut xx, mut xz, mut zz, mut xy, mut zy] = [0.0; 5];
-    for [x, z, y] in triples {
-        xx += x * x;
-        xz += x * z;
-        zz += z * z;
-        xy += x * y;
-        zy += z * y;
+/// The first of the factors c in y = c·x with the least squares of the differences.
+fn least_squares(pairs: impl Iterator<Item = (Vector4<f64>, f64)>) -> Option<f64> {
+    let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+    for (x, y) in pairs {
+        normal += x * x.transpose();
+        right += x * y;
     }
-    let determinant = xx * zz - xz * xz;
-    (determinant > 0.0).then(|| (xy * zz - zy * xz) / determinant)
+    normal.lu().solve(&right).map(|found: Vector4<f64>| found.x)
 }

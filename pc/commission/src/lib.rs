@@ -21,7 +21,9 @@ mod lag;
 mod machine_file;
 mod margins;
 mod plan;
+mod refusal;
 mod response;
+mod stopped;
 
 pub use bode::Bode;
 pub use circle::{REVERSALS_DEG, Turn, TurnFigures, bidirectional_mm};
@@ -30,10 +32,12 @@ pub use excitations::{CapturedMotion, excitations, softened};
 pub use found::{Found, NotFound, measured};
 pub use friction::{NoFriction, friction};
 pub use lag::Lag;
-pub use machine_file::{WriteError, rewrite};
+pub use machine_file::{WriteError, rewrite, rewrite_all, rewrite_coupling};
 pub use margins::Margins;
-pub use plan::{Planned, SETTLE_PERIODS, TRAVEL, TURNS_HZ, WAY, plan, turns, way};
+pub use plan::{Planned, SETTLE_PERIODS, TRAVEL, TURNS_HZ, WAY, plan, plan_at_rest, swing, turns, way};
+pub use refusal::{Measured, Refusal};
 pub use response::{Capture, Line, NoResponse, Response};
+pub use stopped::{Course, Stopped};
 
 use rustfft::algorithm::Radix4;
 use rustfft::{Fft, FftDirection};

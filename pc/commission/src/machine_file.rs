@@ -2,7 +2,10 @@
 //! beside them.
 
 use crate::design::Loop;
+use crate::excitations::least_kp;
+use shared::config::MotionConfig;
 use shared::control::{FrictionConfig, NotchConfig};
+use shared::io::MOTOR_NAMES;
 use thiserror::Error;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
 
@@ -15,6 +18,9 @@ pub enum WriteError {
     /// The motor is not in it.
     #[error("it has no table [motors.{0}]")]
     NoMotor(String),
+    /// There is no gantry in it.
+    #[error("it has no table [gantry]")]
+    NoGantry,
 }
 
 /// The machine file `text` with the loop of motor `name`.
@@ -50,6 +56,49 @@ pub fn rewrite(text: &str, name: &str, found: &Loop) -> Result<String, WriteErro
     }
     if let Some(friction) = &found.motor.friction {
         replace(motor, "friction", of_friction(friction).into());
+    }
+    Ok(document.to_string())
+}
+
+/// The machine file `text` of `machine` with these loops of motors, by their indices. The cross-coupling of a gantry goes with the
+/// lesser proportional gain of its motors.
+///
+/// # Errors
+/// It is no machine file with these motors.
+pub fn rewrite_all(
+    text: &str,
+    machine: &MotionConfig,
+    found: &[(usize, &Loop)],
+) -> Result<String, WriteError> {
+    let mut text = text.to_owned();
+    for (index, found) in found {
+        text = rewrite(&text, MOTOR_NAMES[*index], found)?;
+    }
+    if machine.gantry.is_none() {
+        return Ok(text);
+    }
+    let now = |index: usize| {
+        let of_motor = found.iter().find(|(motor, _)| *motor == index);
+        of_motor.map(|(_, found)| found.motor.kp)
+    };
+    let factor = least_kp(machine, now) / least_kp(machine, |_| None);
+    if factor == 1.0 {
+        return Ok(text);
+    }
+    rewrite_coupling(&text, factor)
+}
+
+/// The machine file `text` with the cross-coupling of its gantry so many times as strong.
+pub fn rewrite_coupling(text: &str, factor: f64) -> Result<String, WriteError> {
+    let mut document: DocumentMut = text.parse()?;
+    let gantry = document
+        .get_mut("gantry")
+        .and_then(Item::as_table_mut)
+        .ok_or(WriteError::NoGantry)?;
+    for key in ["coupling", "coupling_derivative"] {
+        if let Some(before) = gantry.get(key).and_then(Item::as_float) {
+            replace(gantry, key, four_digits(factor * before).into());
+        }
     }
     Ok(document.to_string())
 }

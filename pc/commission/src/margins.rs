@@ -56,6 +56,29 @@ impl Margins {
         }
         margins
     }
+
+    /// The lesser ones of both; the crossover is that of `self`.
+    #[must_use]
+    pub fn or_worse(self, other: &Self) -> Self {
+        let gain = if other.gain_db < self.gain_db {
+            other
+        } else {
+            &self
+        };
+        let phase = if other.phase_deg < self.phase_deg {
+            other
+        } else {
+            &self
+        };
+        Self {
+            gain_db: gain.gain_db,
+            gain_hz: gain.gain_hz,
+            phase_deg: phase.phase_deg,
+            phase_hz: phase.phase_hz,
+            peak: self.peak.max(other.peak),
+            crossover_hz: self.crossover_hz,
+        }
+    }
 }
 
 #[cfg(test)]

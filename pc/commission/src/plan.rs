@@ -1,5 +1,6 @@
 //! Which excitations a motor gets: four bands, so that low frequencies move it well above its noise and high ones stay inside what
-//! its drive accelerates, and all of them on its way, so that friction and play stay on one side.
+//! its drive accelerates, and all of them on its way, so that friction and play stay on one side; and one at rest, so small that
+//! friction holds the motor: the mechanics behind a motor that is held swing at another frequency, and less damped.
 
 use shared::motion::{Chirp, Way};
 use shared::protocol::CAPTURE_TICKS;
@@ -21,6 +22,11 @@ pub const TRAVEL: f64 = 2.0;
 const OF_TRAVEL: f64 = 0.5;
 /// Part of the speed of the way that it takes: the motor never turns round.
 const OF_SPEED: f64 = 0.7;
+
+/// Band of the excitation at rest \[Hz\]: where mechanics swing.
+const BAND_AT_REST: (f64, f64) = (20.0, 200.0);
+/// How far it moves a rigid machine in the middle of that band \[counts\]: as little as a grating still shows.
+pub const COUNTS_AT_REST: f64 = 5.0;
 
 /// How often a motor goes there and back in the capture in which it turns round: as slowly as a capture has it \[Hz\].
 pub const TURNS_HZ: f64 = Chirp::LINE_HZ;
@@ -70,4 +76,29 @@ pub fn plan(length: f64, acceleration: f64) -> Vec<Planned> {
         })
     };
     BANDS.into_iter().flat_map(band).collect()
+}
+
+/// The excitations of a motor that stands, with so many counts a mm or °, and may move with this acceleration \[1/s²\].
+pub fn plan_at_rest(counts_per_unit: f64, acceleration: f64) -> Vec<Planned> {
+    let (from, to) = BAND_AT_REST;
+    let (from_hz, to_hz) = (from / BEYOND, to * BEYOND);
+    let least = COUNTS_AT_REST / counts_per_unit.abs() * TAU * (from * to).sqrt();
+    let planned = Planned {
+        from_hz,
+        to_hz,
+        amplitude: least.min(acceleration / (TAU * to_hz)),
+    };
+    vec![planned; PARTS.len()]
+}
+
+/// The sine on the command of a motor on its way of this `length` (mm or °) that asks for this `acceleration` \[1/s²\]: at the
+/// lowest line at which it does not turn the motor round.
+pub fn swing(length: f64, acceleration: f64) -> Planned {
+    let omega = acceleration / (OF_SPEED * way(length).speed());
+    let hz = (omega / TAU / Chirp::LINE_HZ).ceil().max(1.0) * Chirp::LINE_HZ;
+    Planned {
+        from_hz: hz,
+        to_hz: hz,
+        amplitude: acceleration / (TAU * hz),
+    }
 }

@@ -39,6 +39,8 @@ pub struct Response {
     pub lines: Vec<Line>,
     /// Part of the lines excited up to 200 Hz that are.
     pub believed: f64,
+    /// The same of the motor at rest, where friction holds it; empty if that was not captured.
+    pub at_rest: Vec<Line>,
 }
 
 /// The response at one frequency.
@@ -70,61 +72,42 @@ pub enum NoResponse {
 }
 
 impl Response {
-    /// From captures of a motor: of its [`Line`]s those that are believed.
+    /// From captures of a motor: of its [`Line`]s those that are believed. Captures without a way beside others that have one are
+    /// those at rest.
     ///
     /// # Errors
     /// Too few lines are believed.
     pub fn of(captures: &[Capture], motor: &MotorConfig) -> Result<Self, NoResponse> {
-        let all = Line::of(captures, motor)?;
+        let (resting, going) = by_state(captures)?;
+        let all = lines(&going, motor);
         let below = |line: &&Line| line.hz <= MOST_BELOW_HZ;
-        let lines: Vec<_> = all.iter().filter(|line| line.is_believed()).copied().collect();
         let asked = all.iter().filter(below).count();
+        let lines_of = |all: Vec<Line>| all.into_iter().filter(Line::is_believed).collect();
+        let at_rest = lines_of(lines(&resting, motor));
+        let lines: Vec<_> = lines_of(all);
         let believed = lines.iter().filter(below).count() as f64 / asked as f64;
         if believed < MOST {
             let percent = 100.0 * believed;
             return Err(NoResponse::Incoherent { percent });
         }
-        Ok(Self { lines, believed })
+        Ok(Self {
+            lines,
+            believed,
+            at_rest,
+        })
     }
 }
 
 impl Line {
-    /// All that were excited, upwards, from captures of a motor. With R the chirp, U the command and Y the position, the response is
-    /// S_ry/S_ru: the feedback, which carries the noise of Y into U, does not bias it (Ljung, System Identification, 13.5). The
-    /// coherence is |S_ry|²/(S_rr·S_yy). The sums go over the captures that have excited a line.
+    /// All that were excited on the way, upwards, from captures of a motor. With R the chirp, U the command and Y the position, the
+    /// response is S_ry/S_ru: the feedback, which carries the noise of Y into U, does not bias it (Ljung, System Identification,
+    /// 13.5). The coherence is |S_ry|²/(S_rr·S_yy). The sums go over the captures that have excited a line.
     ///
     /// # Errors
     /// A capture is not whole, or there is none.
     pub fn of(captures: &[Capture], motor: &MotorConfig) -> Result<Vec<Self>, NoResponse> {
-        let whole = |capture: &Capture| capture.samples.len() == CAPTURE_TICKS;
-        if captures.is_empty() || !captures.iter().all(whole) {
-            return Err(NoResponse::Empty);
-        }
-        let mut sums = BTreeMap::<u32, Sums>::new();
-        for capture in captures {
-            let (chirp, amplitude) = (capture.planned.chirp(), capture.planned.amplitude);
-            // Its speed is not quite even, and no period of the capture: left in the command it would be in every line.
-            let way = way(capture.way);
-            let command = |(tick, sample): (u32, &CaptureSample)| {
-                DacCode(sample.command).ratio() * motor.velocity_at_10v - way.at(FIRST_TICK + tick).1
-            };
-            let position = |sample: &CaptureSample| f64::from(sample.counts) / motor.counts_per_unit;
-            let asked = spectrum((0..CAPTURE_TICKS as u32).map(|tick| amplitude * chirp.at(tick)));
-            let command = spectrum((0..).zip(&capture.samples).map(command));
-            let position = spectrum(capture.samples.iter().map(position));
-            let (first, last) = chirp.lines();
-            for line in first..=last {
-                let index = line as usize;
-                let sums = sums.entry(line).or_default();
-                sums.add(asked[index], command[index], position[index]);
-            }
-        }
-        let line = |(number, sums): (&u32, &Sums)| Self {
-            hz: f64::from(*number) * Chirp::LINE_HZ,
-            gain: sums.ry / sums.ru,
-            coherence: sums.ry.norm_sqr() / (sums.rr * sums.yy),
-        };
-        Ok(sums.iter().map(line).collect())
+        let (_, going) = by_state(captures)?;
+        Ok(lines(&going, motor))
     }
 
     /// Whether its coherence is enough.
@@ -136,6 +119,45 @@ impl Line {
         };
         self.coherence >= least
     }
+}
+
+/// Captures at rest, and the others.
+fn by_state(captures: &[Capture]) -> Result<(Vec<&Capture>, Vec<&Capture>), NoResponse> {
+    let whole = |capture: &Capture| capture.samples.len() == CAPTURE_TICKS;
+    if captures.is_empty() || !captures.iter().all(whole) {
+        return Err(NoResponse::Empty);
+    }
+    let goes = captures.iter().any(|capture| capture.way != 0.0);
+    Ok(captures.iter().partition(|capture| goes && capture.way == 0.0))
+}
+
+/// All lines that the captures have excited.
+fn lines(captures: &[&Capture], motor: &MotorConfig) -> Vec<Line> {
+    let mut sums = BTreeMap::<u32, Sums>::new();
+    for capture in captures {
+        let (chirp, amplitude) = (capture.planned.chirp(), capture.planned.amplitude);
+        // Its speed is not quite even, and no period of the capture: left in the command it would be in every line.
+        let way = way(capture.way);
+        let command = |(tick, sample): (u32, &CaptureSample)| {
+            DacCode(sample.command).ratio() * motor.velocity_at_10v - way.at(FIRST_TICK + tick).1
+        };
+        let position = |sample: &CaptureSample| f64::from(sample.counts) / motor.counts_per_unit;
+        let asked = spectrum((0..CAPTURE_TICKS as u32).map(|tick| amplitude * chirp.at(tick)));
+        let command = spectrum((0..).zip(&capture.samples).map(command));
+        let position = spectrum(capture.samples.iter().map(position));
+        let (first, last) = chirp.lines();
+        for line in first..=last {
+            let index = line as usize;
+            let sums = sums.entry(line).or_default();
+            sums.add(asked[index], command[index], position[index]);
+        }
+    }
+    let line = |(number, sums): (&u32, &Sums)| Line {
+        hz: f64::from(*number) * Chirp::LINE_HZ,
+        gain: sums.ry / sums.ru,
+        coherence: sums.ry.norm_sqr() / (sums.rr * sums.yy),
+    };
+    sums.iter().map(line).collect()
 }
 
 /// Spectra over all captures: of what was asked for with command and position, and of both alone.

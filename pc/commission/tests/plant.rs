@@ -2,8 +2,9 @@
 //! by hand (mathematics 0.11), which knows nothing of captures.
 
 use commission::{
-    Capture, Complex, Loop, Margins, NoFriction, Requirements, Response, SETTLE_PERIODS, TURNS_HZ, WAY,
-    design, friction, plan, rewrite, way,
+    Capture, Complex, Loop, Margins, Measured, NoFriction, Planned, Refusal, Requirements, Response,
+    SETTLE_PERIODS, TURNS_HZ, WAY, design, friction, plan, plan_at_rest, rewrite, rewrite_coupling, swing,
+    way,
 };
 use plant::{ModeConfig, MotionPlant, MotorConfig as TrueMotor, PlantConfig};
 use plant_file::{PlantChoice, PlantFile};
@@ -81,6 +82,10 @@ impl Bench {
 
 /// Captures of a motor in its loop, with half of the acceleration that its drive has.
 fn captures(index: usize, config: &TrueMotor, motor: &MotorConfig) -> Vec<Capture> {
+    captures_of(index, config, motor, 0.5 * config.drive.max_acceleration)
+}
+
+fn captures_of(index: usize, config: &TrueMotor, motor: &MotorConfig, acceleration: f64) -> Vec<Capture> {
     let mut bench = Bench::new(index, config);
     let pid = Pid::build("motor", motor, 1.0, SERVO_PERIOD_S).expect("sound");
     let mut state = PidState::default();
@@ -88,7 +93,7 @@ fn captures(index: usize, config: &TrueMotor, motor: &MotorConfig) -> Vec<Captur
     let mut counts = start;
     let mut captures = Vec::new();
     let (way, settle) = (way(WAY), u32::from(SETTLE_PERIODS) * CAPTURE_TICKS as u32);
-    for planned in plan(WAY, 0.5 * config.drive.max_acceleration) {
+    for planned in plan(WAY, acceleration) {
         let (chirp, amplitude) = (planned.chirp(), planned.amplitude);
         let mut samples = Vec::new();
         for tick in 0..way.ticks() {
@@ -268,6 +273,82 @@ fn gain_and_delay_of_the_drive_are_found() {
     assert!((v - 1.03).abs() < 0.01, "{v}");
 }
 
+/// The gain as exactly as the following error at speed wants it.
+#[test]
+fn gain_and_delay_are_those_of_drawn_machines() {
+    for (draw, gain) in [
+        ("draw:usual:313", 0.003),
+        ("draw:usual:318", 0.003),
+        ("draw:poor:1", 0.006),
+    ] {
+        let plant = drawn(draw);
+        for (index, name) in MOTOR_NAMES.iter().enumerate() {
+            let config = plant.plant.motors[index].clone().expect("wired");
+            let motor = believed(&plant, index);
+            let (_, designed) = found(index, &config, &motor);
+            let lag = config.drive.dead_time_s + 50e-6 + SERVO_PERIOD_S / 2.0;
+            let off = designed.lag.gain - 1.0 - config.drive.gain_error;
+            println!(
+                "{draw} {name}: {off:.4}, {:.3} ms",
+                (designed.lag.delay_s - lag) * 1e3
+            );
+            assert!(off.abs() < gain, "{off}");
+            assert!(
+                (designed.lag.delay_s - lag).abs() < 0.2e-3,
+                "{:?} {lag}",
+                designed.lag
+            );
+        }
+    }
+}
+
+/// B of a drawn machine swings where it stands, unless its loop was designed for a motor that friction holds too.
+#[test]
+fn a_motor_that_friction_holds_does_not_swing() {
+    let plant = drawn("draw:usual:313");
+    let index = 5;
+    let config = plant.plant.motors[index].clone().expect("wired");
+    let motor = believed(&plant, index);
+    let mut captures = captures(index, &config, &motor);
+    let of = |captures: &[Capture]| {
+        let response = Response::of(captures, &motor).expect("believed");
+        design(&response, &motor, &Requirements::default()).expect("a loop")
+    };
+    let under_way = of(&captures);
+    let rest = plan_at_rest(motor.counts_per_unit, 0.5 * config.drive.max_acceleration);
+    captures.extend(rest.into_iter().map(|planned| Capture {
+        planned,
+        way: 0.0,
+        samples: shaken(index, &config, &motor, &planned, 0.0),
+    }));
+    let also_at_rest = of(&captures);
+    let swings = [&under_way, &also_at_rest].map(|designed| at_rest(index, &config, &designed.motor));
+    println!("{swings:?} counts");
+    assert!(swings[0] > 15, "it swung by {} counts", swings[0]);
+    assert!(swings[1] <= 6, "it swings by {} counts", swings[1]);
+}
+
+/// Counts over which a motor goes in its loop in the last of four seconds at rest.
+fn at_rest(index: usize, config: &TrueMotor, motor: &MotorConfig) -> i64 {
+    let mut bench = Bench::new(index, config);
+    let pid = Pid::build("motor", motor, 1.0, SERVO_PERIOD_S).expect("sound");
+    let mut state = PidState::default();
+    let start = bench.tick(DacCode(0));
+    let mut counts = start;
+    let (mut least, mut most) = (i64::MAX, i64::MIN);
+    for tick in 0..16_000 {
+        let position = (counts - start) as f64 / motor.counts_per_unit;
+        let command = pid
+            .step(&mut state, &Setpoint::default(), position, 0.0)
+            .expect("finite");
+        counts = bench.tick(DacCode::from_ratio(command, motor.velocity_at_10v));
+        if tick >= 12_000 {
+            (least, most) = (least.min(counts), most.max(counts));
+        }
+    }
+    most - least
+}
+
 /// Of every motor of drawn machines.
 #[test]
 fn drawn_machines_get_loops_with_margins() {
@@ -298,6 +379,13 @@ fn a_machine_file_keeps_what_it_says_besides() {
     assert!(written.contains("kd = 0.0\n"), "what stays is left alone");
     assert!(written.ends_with("[motors.Z]\nkp = 5.0\n"));
     assert!(rewrite(text, "X1", &designed).is_err());
+    let gantry = "[gantry]\ncoupling = 40.0 # assumed\ncoupling_derivative = 0.0\n";
+    let written = rewrite_coupling(gantry, 0.5).expect("there is one");
+    assert_eq!(
+        written,
+        "[gantry]\ncoupling = 20.0 # commissioned; was 40.0\ncoupling_derivative = 0.0\n"
+    );
+    assert!(rewrite_coupling(text, 0.5).is_err());
     assert!(rewrite("kp = ", "Y", &designed).is_err());
 }
 
@@ -398,4 +486,124 @@ fn where_there_is_no_friction_none_is_found() {
     let none = found(&samples);
     assert!(matches!(none, Err(NoFriction::Unlike { .. })), "{none:?}");
     assert_eq!(found(&samples[..CAPTURE_TICKS / 2]), Err(NoFriction::Empty));
+}
+
+/// What is said of a motor that is measured as a machine is, with the shipped acceleration of its axis.
+fn refusal(index: usize, config: &TrueMotor, motor: &MotorConfig) -> Option<Refusal> {
+    let acceleration = if index < 4 { 1000.0 } else { 400.0 };
+    let captures = captures_of(index, config, motor, 0.5 * acceleration);
+    let response = Response::of(&captures, motor).ok();
+    let designed = response
+        .as_ref()
+        .and_then(|response| design(response, motor, &Requirements::default()).ok());
+    let turning = turning(index, config, motor, 1.0);
+    let found = response.as_ref().zip(designed.as_ref());
+    let friction =
+        found.and_then(|(response, designed)| friction(response, &turning, motor, designed.lag.delay_s).ok());
+    let (swing, rest) = (
+        swing(WAY, acceleration),
+        plan_at_rest(motor.counts_per_unit, acceleration)[0],
+    );
+    let measured = Measured {
+        motor,
+        response: response.as_ref(),
+        designed: designed.as_ref(),
+        turning: &turning,
+        friction: friction.as_ref(),
+        swung: Some((swing.from_hz, &shaken(index, config, motor, &swing, WAY))),
+        resting: &shaken(index, config, motor, &rest, 0.0),
+        tool_mm: 1.0,
+    };
+    measured.refusal().expect("sound")
+}
+
+#[test]
+fn what_cannot_be_commissioned_is_refused_for_what_is_wrong_with_it() {
+    for draw in ["draw:usual:1", "draw:usual:2"] {
+        let plant = drawn(draw);
+        for index in [Y, 5] {
+            let config = plant.plant.motors[index].clone().expect("wired");
+            let motor = believed(&plant, index);
+            let refused = |spoil: &dyn Fn(&mut TrueMotor)| {
+                let mut spoilt = config.clone();
+                spoil(&mut spoilt);
+                refusal(index, &spoilt, &motor)
+            };
+            println!("{draw} {}", MOTOR_NAMES[index]);
+            assert_eq!(refused(&|_| ()), None);
+            let found = refused(&|motor| motor.drive.max_acceleration = 1.3 * motor.mechanics.friction);
+            assert!(matches!(found, Some(Refusal::Acceleration { .. })), "{found:?}");
+            let found = refused(&|motor| motor.mechanics.backlash = 0.5);
+            assert!(
+                matches!(found, Some(Refusal::Lost { lost_mm }) if lost_mm < 0.5),
+                "{found:?}"
+            );
+            // The friction of a rotary axis holds it where it stands.
+            if index != Y {
+                continue;
+            }
+            let found = refused(&|motor| motor.mechanics.modes = [soft(7.0)].into_iter().collect());
+            assert!(
+                matches!(found, Some(Refusal::Resonance { hz, .. }) if (3.5..15.0).contains(&hz)),
+                "{found:?}"
+            );
+        }
+    }
+}
+
+/// A load that swings at a frequency \[Hz\], and carries the grating.
+fn soft(frequency_hz: f64) -> ModeConfig {
+    ModeConfig {
+        frequency_hz,
+        damping: 0.03,
+        motor: 1.0,
+        grating: -1.0,
+        tool: -1.0,
+    }
+}
+
+/// The last period of three in which a motor on a way of this length is shaken.
+fn shaken(
+    index: usize,
+    config: &TrueMotor,
+    motor: &MotorConfig,
+    planned: &Planned,
+    length: f64,
+) -> Vec<CaptureSample> {
+    let mut bench = Bench::new(index, config);
+    let pid = Pid::build("motor", motor, 1.0, SERVO_PERIOD_S).expect("sound");
+    let mut state = PidState::default();
+    let start = bench.tick(DacCode(0));
+    let mut counts = start;
+    let mut samples = Vec::new();
+    let (chirp, way) = (planned.chirp(), way(length));
+    for tick in 0..3 * CAPTURE_TICKS as u32 {
+        let position = (counts - start) as f64 / motor.counts_per_unit;
+        let (place, velocity) = way.at(tick);
+        let feedback = pid
+            .step(
+                &mut state,
+                &Setpoint {
+                    position: place,
+                    velocity,
+                    ..Setpoint::default()
+                },
+                position,
+                0.0,
+            )
+            .expect("finite");
+        let code = DacCode::from_ratio(
+            feedback + planned.amplitude * chirp.at(tick),
+            motor.velocity_at_10v,
+        );
+        if tick >= 2 * CAPTURE_TICKS as u32 {
+            samples.push(CaptureSample {
+                command: code.0,
+                counts: (counts - start - (place * motor.counts_per_unit).round() as i64) as i32,
+                error: (place - position) as f32,
+            });
+        }
+        counts = bench.tick(code);
+    }
+    samples
 }

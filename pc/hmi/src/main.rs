@@ -32,7 +32,7 @@ struct Arguments {
     /// simulated, emulated, or the addresses of real boards: MOTION,TRACKER, or MOTION without a tracker
     #[arg(long, default_value = "simulated")]
     boards: BoardChoice,
-    /// What is true of a simulated machine: a plant file, or draw:usual:SEED or draw:poor:SEED
+    /// What is true of a simulated machine: a plant file, or draw:usual:SEED, draw:poor:SEED or draw:bad:SEED
     /// [default: as shipped, without errors]
     #[arg(long)]
     plant: Option<PlantChoice>,

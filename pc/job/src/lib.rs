@@ -22,6 +22,7 @@ mod run_record;
 mod seam_teaching;
 mod session;
 mod slides;
+mod stopped;
 mod surroundings;
 mod teaching;
 mod tracking;
@@ -38,6 +39,7 @@ pub use leading::LedLesson;
 pub use marking::{MarkRun, SeenMarks};
 pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
 pub use seam_teaching::{SeamLesson, TaughtSeam};
+pub use stopped::stopped;
 pub use surroundings::{Surroundings, SurroundingsError};
 pub use teaching::{NoTeaching, RangingProbe, Taught, check_teaching};
 

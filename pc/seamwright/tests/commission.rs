@@ -6,6 +6,8 @@ use tempfile::tempdir;
 
 /// A drawn machine whose loops swing with the shipped gains.
 const RINGS: &str = "draw:usual:1";
+/// One whose drive of A is connected the wrong way round.
+const REVERSED: &str = "draw:bad:3002";
 
 fn shipped(file: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)
@@ -25,6 +27,10 @@ fn commission(machine: &Path, more: &[&str]) -> Output {
 }
 
 fn weld(machine: &Path, report: &Path) -> Output {
+    weld_on(RINGS, machine, report)
+}
+
+fn weld_on(plant: &str, machine: &Path, report: &Path) -> Output {
     let (program, seam) = (
         shipped("programs/t-seam-400.ngc"),
         shipped("programs/t-seam-400-deviation.csv"),
@@ -41,7 +47,7 @@ fn weld(machine: &Path, report: &Path) -> Output {
         "--report",
         report,
         "--plant",
-        RINGS,
+        plant,
         "--camera",
         "geometric",
     ])
@@ -80,12 +86,18 @@ fn a_machine_whose_loops_swing_welds_when_it_is_commissioned() {
     assert_eq!(told.status.code(), Some(0), "{said}");
     assert!(said.contains("before  kp  120.0 1/s  gain margin  -"), "{said}");
     let plot = std::fs::read_to_string(plots.join("B.svg")).expect("a plot");
-    for shown in [
-        "Speed for a command",
-        "Coherence",
-        "gain margin -2.6 dB, now 8.6 dB",
-        "100 Hz",
-    ] {
+    let gain_margin = |row: &str| {
+        let row = said.lines().find(|line| line.trim_start().starts_with(row));
+        let told = row.and_then(|row| row.split_once("gain margin"));
+        let (margin, _) = told.and_then(|(_, told)| told.split_once("dB")).expect(&said);
+        margin.trim().to_owned()
+    };
+    let margins = format!(
+        "gain margin {} dB, now {} dB",
+        gain_margin("before"),
+        gain_margin("now")
+    );
+    for shown in ["Speed for a command", "Coherence", &margins, "100 Hz"] {
         assert!(plot.contains(shown), "{shown}");
     }
     assert_eq!(std::fs::read_to_string(&machine).expect("it is there"), before);
@@ -117,6 +129,49 @@ fn a_machine_whose_loops_swing_welds_when_it_is_commissioned() {
         &["--plant", RINGS, "--within", "0.0001", "--speed", "1"],
     );
     assert_eq!(narrow.status.code(), Some(3), "{narrow:?}");
+}
+
+#[test]
+fn a_machine_that_resonates_at_80_or_40_hz_welds_when_it_is_commissioned() {
+    let folder = tempdir().expect("a folder");
+    let plant =
+        std::fs::read_to_string(shipped("machines/dual-beam-gantry.plant.toml")).expect("it is there");
+    let (before, of_y) = plant.split_once("[motors.Y.mechanics]\n").expect("a table");
+    for hz in [80, 40] {
+        let [file, machine, report] =
+            ["plant.toml", "machine.toml", "report"].map(|name| folder.path().join(format!("{hz}-{name}")));
+        let mode = format!(
+            "modes = [{{ frequency_hz = {hz}.0, damping = 0.05, motor = 0.25, grating = -1.0, tool = -1.0 }}]"
+        );
+        std::fs::write(&file, format!("{before}[motors.Y.mechanics]\n{mode}\n{of_y}")).expect("written");
+        let (plant, output) = (file.to_str().expect("a path"), machine.to_str().expect("a path"));
+        let gantry = shipped("machines/dual-beam-gantry.toml");
+        let told = commission(&gantry, &["--plant", plant, "--motors", "Y", "-o", output]);
+        let said = String::from_utf8_lossy(&told.stdout);
+        assert_eq!(told.status.code(), Some(0), "{said}");
+        assert!(said.contains("notch at "), "{said}");
+        let ended = weld_on(plant, &machine, &report);
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(0), "{said}");
+    }
+}
+
+#[test]
+fn a_drive_that_is_connected_the_wrong_way_round_is_named() {
+    let folder = tempdir().expect("a folder");
+    let output = folder.path().join("machine.toml");
+    let machine = shipped("machines/dual-beam-gantry.toml");
+    let told = commission(
+        &machine,
+        &["--plant", REVERSED, "-o", output.to_str().expect("a path")],
+    );
+    let said = String::from_utf8_lossy(&told.stdout);
+    assert_eq!(told.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("A: reversed: its grating moves against its command"),
+        "{said}"
+    );
+    assert!(!output.exists());
 }
 
 fn circle(machine: &Path, more: &[&str]) -> Output {

@@ -9,13 +9,13 @@ mod draw;
 mod read;
 mod shipped;
 
-pub use draw::Quality;
+pub use draw::{Defect, Quality};
 pub use read::PlantFileError;
 pub use shipped::{COMMISSIONED, DEFAULT_MACHINE, names};
 
 use plant::{LONGEST, MotionPlant, PlantConfig, SlidePlant};
 use serde::Deserialize;
-use shared::io::SIDES;
+use shared::io::{MOTOR_NAMES, SIDES};
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -75,7 +75,7 @@ impl FromStr for PlantChoice {
         };
         let (quality, seed) = drawn
             .split_once(':')
-            .ok_or("say which one: draw:usual:SEED or draw:poor:SEED, with a whole number")?;
+            .ok_or("say which one: draw:usual:SEED, draw:poor:SEED or draw:bad:SEED, with a whole number")?;
         Ok(Self::Drawn {
             quality: quality.parse()?,
             seed: seed
@@ -104,6 +104,15 @@ impl PlantChoice {
             Self::Drawn { quality, seed } => Ok(draw::around(PlantFile::shipped(machine)?, *quality, *seed)),
         }
     }
+}
+
+/// Which motor of `draw:bad:SEED` of the machine that is called so has what defect.
+///
+/// # Errors
+/// There is no such machine.
+pub fn defect(machine: &str, seed: u32) -> Result<Option<(&'static str, Defect)>, PlantFileError> {
+    let found = draw::defect(&PlantFile::shipped(machine)?, seed);
+    Ok(found.map(|(motor, defect)| (MOTOR_NAMES[motor], defect)))
 }
 
 impl PlantFile {

@@ -141,7 +141,7 @@ fn a_choice_is_a_file_or_a_draw() {
     assert_eq!(drawn.to_string(), "draw:poor:12");
     for (wrong, says) in [
         ("draw:usual", "draw:usual:SEED"),
-        ("draw:fine:1", "there are usual and poor"),
+        ("draw:fine:1", "there are usual, poor and bad"),
         ("draw:usual:x", "whole number"),
     ] {
         let error = wrong.parse::<PlantChoice>().expect_err(wrong);
@@ -155,4 +155,28 @@ fn a_choice_is_a_file_or_a_draw() {
         error.contains("called lathe") && error.contains("dual-beam-gantry, "),
         "{error}"
     );
+}
+
+/// All that is wrong with a bad machine is its defect, and each defect comes to each motor.
+#[test]
+fn a_bad_machine_is_a_usual_one_with_a_defect() {
+    let mut seen = BTreeSet::new();
+    for seed in 0..400 {
+        let [usual, bad] = ["usual", "bad"].map(|quality| {
+            let choice: PlantChoice = format!("draw:{quality}:{seed}").parse().unwrap();
+            choice.of(DEFAULT_MACHINE).unwrap()
+        });
+        let (motor, what) = defect(DEFAULT_MACHINE, seed).unwrap().unwrap();
+        for (number, name) in MOTOR_NAMES.iter().enumerate() {
+            let same = usual.plant.motors[number] == bad.plant.motors[number];
+            assert_eq!(same, *name != motor, "{seed}: {what} of {motor}, {name}");
+        }
+        assert_eq!(
+            (&usual.plant.slides, usual.cameras),
+            (&bad.plant.slides, bad.cameras)
+        );
+        assert!(!bad.encode().is_empty());
+        seen.insert((motor, what));
+    }
+    assert_eq!(seen.len(), MOTOR_NAMES.len() * Defect::ALL.len());
 }

@@ -1,5 +1,6 @@
 //! Benchmarks: instructions of functions, on the PC and on the emulated board, and programs through the planner.
 
+mod bad;
 mod board;
 mod bounded;
 mod callgrind;
@@ -100,12 +101,13 @@ pub enum Benchmark {
         seed: u64,
     },
     /// Draw machines at random and let each weld the shipped job of its kind on simulated boards, with the shipped gains and
-    /// commissioned; fails if a commissioned one does not weld within its limits. A draw takes half a minute
+    /// commissioned; fails if a commissioned one does not weld within its limits. Bad ones are only commissioned; fails if fewer than
+    /// 90 % are refused for the right reason. A draw takes half a minute
     Robustness {
         /// Which machine
         #[arg(long, value_name = "NAME", default_value = plant_file::DEFAULT_MACHINE)]
         machine: String,
-        /// usual or poor
+        /// usual, poor or bad
         #[arg(long, default_value_t = Quality::Usual)]
         quality: Quality,
         /// How many

@@ -9,9 +9,10 @@ pub use kept::keep;
 
 use crate::parameters::Parameters;
 use anyhow::Context;
-use commission::{CapturedMotion, Found, Line, Margins, NotFound, Requirements, measured, rewrite};
+use commission::{CapturedMotion, Found, Line, Margins, NotFound, Requirements, measured, rewrite_all};
 use config::machine::MachineFile;
 use kept::Kept;
+use shared::config::MotionConfig;
 use shared::control::MotorConfig;
 use shared::io::{MOTOR_NAMES, MOTORS};
 use std::path::{Path, PathBuf};
@@ -129,7 +130,7 @@ impl Commissioning {
             let now = machine.motion.motors[index].as_ref()?;
             let known = match Kept::read(file, index) {
                 Ok(None) => Known::Nothing,
-                Ok(Some(kept)) => Known::Measured(Box::new(evaluated(kept, index, now))),
+                Ok(Some(kept)) => Known::Measured(Box::new(evaluated(&machine.motion, kept, index, now))),
                 Err(error) => Known::Unreadable(config::sentence(error.as_ref())),
             };
             Some(Motor { index, known })
@@ -152,13 +153,13 @@ impl Commissioning {
     pub fn proposal(&self, indices: &[usize]) -> anyhow::Result<Parameters> {
         let mut parameters = Parameters::open(&self.file)?;
         let file = || format!("machine file {}", self.file.display());
-        let mut text = std::fs::read_to_string(&self.file).with_context(file)?;
-        for motor in self.motors.iter().filter(|motor| indices.contains(&motor.index)) {
-            if let Some(found) = motor.unwritten() {
-                text = rewrite(&text, motor.name(), &found.of_loop).with_context(file)?;
-            }
-        }
-        parameters.propose(text);
+        let machine = MachineFile::read(&self.file)?;
+        let text = std::fs::read_to_string(&self.file).with_context(file)?;
+        let chosen = self.motors.iter().filter(|motor| indices.contains(&motor.index));
+        let loops: Vec<_> = chosen
+            .filter_map(|motor| Some((motor.index, &motor.unwritten()?.of_loop)))
+            .collect();
+        parameters.propose(rewrite_all(&text, &machine.motion, &loops).with_context(file)?);
         Ok(parameters)
     }
 
@@ -178,8 +179,8 @@ impl Commissioning {
     }
 }
 
-/// What was kept of the motor with this index, whose parameters are `now` in the machine file.
-fn evaluated(kept: Kept, index: usize, now: &MotorConfig) -> Measured {
+/// What was kept of the motor with this index of `machine`, whose parameters are `now` in the machine file.
+fn evaluated(machine: &MotionConfig, kept: Kept, index: usize, now: &MotorConfig) -> Measured {
     let standing = match () {
         () if kept.written.as_ref() == Some(now) => Standing::Written,
         () if kept.motor == *now => Standing::Current,
@@ -196,7 +197,7 @@ fn evaluated(kept: Kept, index: usize, now: &MotorConfig) -> Measured {
         standing,
         // Without a whole capture there is none, and nothing is found.
         lines: measured(&before, index, &captured).unwrap_or_default(),
-        found: Found::of(Some(&before), index, &captured),
+        found: Found::of(machine, Some(&before), index, &captured),
         before,
     }
 }

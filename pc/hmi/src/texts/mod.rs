@@ -333,6 +333,7 @@ texts! {
     DoFreeMotor: "Look for friction, play, a loose coupling, a brake that is not open, and at the signal of the grating; then measure again.", "请检查摩擦、间隙、松动的联轴器、未松开的制动器以及光栅信号，然后重新测量。", "Nach Reibung, Spiel, loser Kupplung, geschlossener Bremse und dem Signal des Messsystems sehen; dann neu messen.";
     DoLookAtPlot: "Look at the plot: where a resonance stands out at a low frequency, stiffen or damp it, or lower the limits of the drive's own filters; then measure again.", "请查看曲线：若低频处有突出的共振，请加强刚度或阻尼，或检查驱动自身的滤波器，然后重新测量。", "Die Kurven ansehen: wo bei niedriger Frequenz eine Resonanz heraussteht, versteifen oder dämpfen, auch die Filter des Antriebs prüfen; dann neu messen.";
     DoCorrect: "Correct the value on the page Parameters, then look here again.", "请在“参数”页面更正该数值，然后再查看此处。", "Den Wert auf der Seite Parameter berichtigen, dann hier wieder nachsehen.";
+    DoMendIt: "See to what is named, then measure again.", "请先处理上述问题，然后重新测量。", "Das Genannte beheben, dann neu messen.";
     DoRepeat: "Measure it again.", "请重新测量。", "Neu messen.";
     SpeedForCommand: "Measured: speed for a command, gain [dB]", "实测：速度/指令，增益 [dB]", "Gemessen: Geschwindigkeit zu Befehl, Betrag [dB]";
     SpeedPhase: "phase [°]", "相位 [°]", "Phase [°]";

@@ -33,7 +33,7 @@ pub struct BoardArgs {
     /// emulated, simulated, or the addresses of real boards: MOTION,TRACKER, or MOTION without a tracker
     #[arg(long = "boards", default_value = "emulated")]
     pub choice: BoardChoice,
-    /// What is true of a simulated machine: a plant file, or draw:usual:SEED or draw:poor:SEED for one drawn at random
+    /// What is true of a simulated machine: a plant file, or draw:usual:SEED, draw:poor:SEED or draw:bad:SEED for one drawn at random
     /// [default: as shipped, without errors; with `cargo xtask weld` and no --machine draw:usual:401]
     #[arg(long, env = PLANT_VARIABLE, hide_env = true)]
     plant: Option<PlantChoice>,

@@ -5,19 +5,19 @@ use crate::console::outln;
 use crate::terminal::Operator;
 use anyhow::{Context, bail};
 use clap::Args;
-use commission::{CapturedMotion, Found, Margins, excitations, measured, rewrite, softened};
+use commission::{CapturedMotion, Found, Margins, excitations, measured, rewrite_all, softened};
 use config::machine::MachineFile;
-use job::{ExcitationRun, Work};
+use job::{ExcitationRun, Work, stopped};
 use report::{prepare, write_motor};
 use shared::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use shared::kinematics::AXIS_UNIT;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The machine homes. Each motor then goes 20 mm (20°) there and back, twelve times, while its drive is shaken by up to
-/// 1 mm; from what its grating tells come gain and delay of the drive, and the highest gains with a gain margin of 6 dB, a phase
-/// margin of 45° and a sensitivity of 2 at most, with notches at resonances. At last it swings 1 mm (1°) to both sides where it
-/// stands, for the feed-forward of its friction. Everything must be free to move.
+/// The machine homes. Each motor then goes 20 mm (20°) there and back, thirteen times, while its drive is shaken by up to
+/// 1 mm, and is shaken by some counts where it stands; from what its grating tells come gain and delay of the drive, and the highest
+/// gains with a gain margin of 6 dB, a phase margin of 45° and a sensitivity of 2 at most, with notches at resonances. It also swings
+/// 1 mm (1°) to both sides where it stands, for the feed-forward of its friction. Everything must be free to move.
 #[derive(Debug, Args)]
 pub struct Commission {
     /// Machine file
@@ -70,8 +70,11 @@ impl Commission {
             Ok(ended) => ended,
             Err(code) => return Ok(code),
         };
-        if ended.error.is_some() {
-            return exit_code(ended.error);
+        if let Some(error) = ended.error {
+            if let Some((motor, why)) = stopped(&machine.motion, &error, &ended.record) {
+                outln!("{}: {why}", MOTOR_NAMES[motor]);
+            }
+            return exit_code(Some(error));
         }
         self.write(&machine, &motors, &ended.taught.captured)?;
         Ok(ExitCode::SUCCESS)
@@ -105,12 +108,12 @@ impl Commission {
         captured: &[CapturedMotion],
     ) -> anyhow::Result<()> {
         let file = || format!("machine file {}", self.machine.display());
-        let mut text = std::fs::read_to_string(&self.machine).with_context(file)?;
-        let mut refused = Vec::new();
+        let text = std::fs::read_to_string(&self.machine).with_context(file)?;
+        let (mut loops, mut refused) = (Vec::new(), Vec::new());
         for motor in motors {
             let name = MOTOR_NAMES[*motor];
             let before = machine.motion.motors[*motor].as_ref();
-            let found = Found::of(before, *motor, captured);
+            let found = Found::of(&machine.motion, before, *motor, captured);
             if let (Some(report), Some(before)) = (&self.report, before) {
                 let plot = report.join(format!("{name}.svg"));
                 let title = format!("{name}: {}", self.machine.display());
@@ -120,7 +123,7 @@ impl Commission {
             match found {
                 Ok(found) => {
                     tell(name, machine, *motor, &found);
-                    text = rewrite(&text, name, &found.of_loop).with_context(file)?;
+                    loops.push((*motor, found.of_loop));
                 }
                 Err(error) => {
                     outln!("{name}: left as it is: {error}");
@@ -128,6 +131,8 @@ impl Commission {
                 }
             }
         }
+        let loops: Vec<_> = loops.iter().map(|(motor, found)| (*motor, found)).collect();
+        let text = rewrite_all(&text, &machine.motion, &loops).with_context(file)?;
         if let Some(output) = &self.output {
             MachineFile::parse(&output.display().to_string(), &text)
                 .context("what was found makes no machine file, and none is written")?;

@@ -205,10 +205,10 @@ fn ask(
 /// What a motor is going to do.
 fn moves(view: &View, index: usize, excitations: &[Excitation]) -> String {
     let unit = unit(index);
-    let on_the_way = || excitations.iter().filter(|told| told.excited == Excited::Command);
-    let way = on_the_way().map(|told| told.way).fold(0.0, f64::max);
+    let commanded = || excitations.iter().filter(|told| told.excited == Excited::Command);
+    let way = commanded().map(|told| told.way).fold(0.0, f64::max);
     // The slowest part of a chirp of the speed goes farthest.
-    let shaken = on_the_way()
+    let shaken = commanded()
         .map(|told| told.amplitude / (TAU * told.from_hz))
         .fold(0.0, f64::max);
     let turning = excitations
@@ -216,7 +216,7 @@ fn moves(view: &View, index: usize, excitations: &[Excitation]) -> String {
         .filter(|told| told.excited == Excited::Reference);
     let turning = turning.map(|told| told.amplitude).fold(0.0, f64::max);
     let [way, shaken, turning] = [way, shaken, turning].map(|length| format!("{length:.2} {unit}"));
-    let times = on_the_way().count().to_string();
+    let times = commanded().filter(|told| told.way > 0.0).count().to_string();
     view.words.with(
         Text::MeasureMoves,
         &[MOTOR_NAMES[index], &times, &way, &shaken, &turning],

@@ -57,6 +57,7 @@ fn remedy(error: &NotFound) -> Text {
     match error {
         NotFound::Response(Incoherent { .. }) | NotFound::Design(NoDesign::NoLag) => Text::DoFreeMotor,
         NotFound::Response(Empty) | NotFound::NoMotor => Text::DoRepeat,
+        NotFound::Refused(_) => Text::DoMendIt,
         NotFound::Design(NoDesign::NoGain) => Text::DoLookAtPlot,
         NotFound::Design(NoDesign::Parameter(_)) => Text::DoCorrect,
     }

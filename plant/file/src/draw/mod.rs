@@ -1,5 +1,9 @@
 //! Machines drawn at random around a shipped one: what data sheets and textbooks let one expect of a machine that was set up
-//! with care (`usual`) or without (`poor`). docs/plant.md has the table with its sources.
+//! with care (`usual`) or without (`poor`), and machines with a defect (`bad`). docs/plant.md has the tables with their sources.
+
+mod defect;
+
+pub use defect::Defect;
 
 use crate::PlantFile;
 use plant::{ModeConfig, MotorConfig, Noise, SlideConfig, Wave};
@@ -14,6 +18,8 @@ pub enum Quality {
     Usual,
     /// Worn, or set up without care: twice the errors.
     Poor,
+    /// A usual one of which one motor has a [`Defect`].
+    Bad,
 }
 
 impl FromStr for Quality {
@@ -23,7 +29,10 @@ impl FromStr for Quality {
         match text {
             "usual" => Ok(Self::Usual),
             "poor" => Ok(Self::Poor),
-            _ => Err(format!("{text} is no kind of machine: there are usual and poor")),
+            "bad" => Ok(Self::Bad),
+            _ => Err(format!(
+                "{text} is no kind of machine: there are usual, poor and bad"
+            )),
         }
     }
 }
@@ -33,6 +42,7 @@ impl fmt::Display for Quality {
         f.write_str(match self {
             Self::Usual => "usual",
             Self::Poor => "poor",
+            Self::Bad => "bad",
         })
     }
 }
@@ -52,7 +62,7 @@ pub fn around(mut shipped: PlantFile, quality: Quality, seed: u32) -> PlantFile 
     let mut draw = Draw {
         noise: Noise::new(seed, u32::MAX),
         errors: match quality {
-            Quality::Usual => 1.0,
+            Quality::Usual | Quality::Bad => 1.0,
             Quality::Poor => 2.0,
         },
     };
@@ -81,7 +91,27 @@ pub fn around(mut shipped: PlantFile, quality: Quality, seed: u32) -> PlantFile 
     for slide in shipped.plant.slides.iter_mut().flatten() {
         slide.enable_s = draw.between(0.02, 0.15);
     }
+    if let (Quality::Bad, Some((number, defect))) = (quality, defect(&shipped, seed))
+        && let Some(motor) = &mut shipped.plant.motors[number]
+    {
+        draw.spoil(motor, number, defect);
+    }
     shipped
+}
+
+/// Which motor of the bad machine around `shipped` has what defect; none if it has no motors.
+pub fn defect(shipped: &PlantFile, seed: u32) -> Option<(usize, Defect)> {
+    let motors = shipped.plant.motors.iter().enumerate();
+    let fitted: Vec<_> = motors
+        .filter_map(|(i, motor)| motor.as_ref().map(|_| i))
+        .collect();
+    // Of its own, so that it is the same whatever else is drawn.
+    let mut draw = Draw {
+        noise: Noise::new(seed, u32::MAX - 1),
+        errors: 1.0,
+    };
+    let defect = draw.defect();
+    (!fitted.is_empty()).then(|| (fitted[draw.one_of(fitted.len())], defect))
 }
 
 impl Draw {

@@ -1,0 +1,60 @@
+//! The cross-coupling of a gantry beside the gains of its motors.
+
+use commission::{Lag, Loop, Margins, rewrite_all};
+use config::machine::MachineFile;
+use shared::config::MotionConfig;
+
+const X1: usize = 0;
+const X2: usize = 1;
+const Y: usize = 2;
+const SHIPPED: &str = include_str!("../../../machines/dual-beam-gantry.toml");
+
+fn machine(text: &str) -> MotionConfig {
+    MachineFile::parse("m.toml", text).expect("a machine").motion
+}
+
+/// What was found of a motor of the shipped machine, which now has this gain.
+fn with_gain(index: usize, kp: f64) -> Loop {
+    let mut motor = machine(SHIPPED).motors[index].clone().expect("it is fitted");
+    motor.ki *= kp / motor.kp;
+    motor.kp = kp;
+    Loop {
+        motor,
+        margins: Margins::of(&[]),
+        before: Margins::of(&[]),
+        lag: Lag {
+            gain: 1.0,
+            delay_s: 0.0,
+        },
+    }
+}
+
+fn coupling(text: &str) -> f64 {
+    machine(text).gantry.expect("X is one").coupling
+}
+
+#[test]
+fn the_coupling_goes_with_the_lesser_gain_of_both_motors_whichever_is_written_first() {
+    let (x1, x2, y) = (with_gain(X1, 90.0), with_gain(X2, 60.0), with_gain(Y, 100.0));
+    let before = machine(SHIPPED);
+    let gain = |index: usize| before.motors[index].as_ref().expect("it is fitted").kp;
+    let expected = coupling(SHIPPED) * 60.0 / gain(X1).min(gain(X2));
+    assert!(expected > 0.0);
+    let written = |found: &[&[(usize, &Loop)]]| {
+        found.iter().fold(SHIPPED.to_owned(), |text, found| {
+            rewrite_all(&text, &machine(&text), found).expect("these motors are in it")
+        })
+    };
+    for order in [
+        &[&[(X1, &x1), (X2, &x2), (Y, &y)][..]][..],
+        &[&[(X1, &x1)], &[(Y, &y)], &[(X2, &x2)]],
+        &[&[(X2, &x2)], &[(X1, &x1)]],
+    ] {
+        let found = coupling(&written(order));
+        assert!(
+            (found - expected).abs() < 1e-3 * expected,
+            "{found} instead of {expected}"
+        );
+    }
+    assert_eq!(coupling(&written(&[&[(Y, &y)]])), coupling(SHIPPED));
+}
