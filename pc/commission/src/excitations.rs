@@ -79,7 +79,7 @@ pub fn excitations(machine: &MotionConfig, index: usize) -> Vec<Excitation> {
     on_the_way
         .chain([turning])
         .chain(at_rest)
-        .chain([shaken(swing(way.abs().max(TRAVEL), full), way)])
+        .chain([shaken(swing(way.abs().max(TRAVEL), full, speed), way)])
         .collect()
 }
 

@@ -92,9 +92,10 @@ pub fn plan_at_rest(counts_per_unit: f64, acceleration: f64) -> Vec<Planned> {
 }
 
 /// The sine on the command of a motor on its way of this `length` (mm or °) that asks for this `acceleration` \[1/s²\]: at the
-/// lowest line at which it does not turn the motor round.
-pub fn swing(length: f64, acceleration: f64) -> Planned {
-    let omega = acceleration / (OF_SPEED * way(length).speed());
+/// lowest line at which it does not turn the motor round, nor make it faster than `max_speed` \[1/s\].
+pub fn swing(length: f64, acceleration: f64, max_speed: f64) -> Planned {
+    let speed = way(length).speed();
+    let omega = acceleration / (OF_SPEED * speed.min(max_speed - speed));
     let hz = (omega / TAU / Chirp::LINE_HZ).ceil().max(1.0) * Chirp::LINE_HZ;
     Planned {
         from_hz: hz,

@@ -501,7 +501,7 @@ fn refusal(index: usize, config: &TrueMotor, motor: &MotorConfig) -> Option<Refu
     let friction =
         found.and_then(|(response, designed)| friction(response, &turning, motor, designed.lag.delay_s).ok());
     let (swing, rest) = (
-        swing(WAY, acceleration),
+        swing(WAY, acceleration, f64::INFINITY),
         plan_at_rest(motor.counts_per_unit, acceleration)[0],
     );
     let measured = Measured {
