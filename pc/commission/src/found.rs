@@ -79,12 +79,10 @@ impl Found {
             .map_err(Clone::clone)
             .map(|response| design(response, motor, &requirements));
         let found = designed.as_ref().ok().and_then(|designed| designed.as_ref().ok());
-        let friction = match (&response, found) {
-            (Ok(response), found) => {
-                let delay_s = found.map_or(0.0, |found| found.lag.delay_s);
-                friction(response, turning, motor, delay_s)
-            }
-            (Err(_), _) => Err(NoFriction::NoResponse),
+        let delay_s = found.map_or(0.0, |found| found.lag.delay_s);
+        let friction = match &response {
+            Ok(response) => friction(response, turning, motor, delay_s),
+            Err(_) => Err(NoFriction::NoResponse),
         };
         let resting = captures.iter().find(|capture| capture.way == 0.0);
         let unit = AXIS_UNIT[MOTOR_AXIS[index]];
@@ -121,10 +119,10 @@ impl Found {
     }
 }
 
-/// The response of the motor with this `index`, whether or not it is believed: all lines that were excited.
+/// The response of the motor with this `index`, whether or not it is believed: all lines that were excited on its way.
 ///
 /// # Errors
-/// There is none.
+/// Nothing of it was captured, or not whole periods.
 pub fn measured(
     motor: &MotorConfig,
     index: usize,

@@ -5,6 +5,7 @@
 //! Planned → excitation, captures → Response (gain and coherence at lines) → Lag (gain and delay of the drive)
 //!                                                   → design: controller × response → Margins → Loop → machine file
 //! capture in which the motor turns round, Response → friction → Loop
+//! all of that → Refusal: what has to be seen to first; a job that tripped → Stopped
 //! ```
 //! [`excitations`] has what a motor of a machine is told, [`Found`] all of this for what was captured then.
 //!
@@ -32,7 +33,7 @@ pub use excitations::{CapturedMotion, excitations, softened};
 pub use found::{Found, NotFound, measured};
 pub use friction::{NoFriction, friction};
 pub use lag::Lag;
-pub use machine_file::{WriteError, rewrite, rewrite_all, rewrite_coupling};
+pub use machine_file::{WriteError, rewrite, rewrite_all};
 pub use margins::Margins;
 pub use plan::{Planned, SETTLE_PERIODS, TRAVEL, TURNS_HZ, WAY, plan, plan_at_rest, swing, turns, way};
 pub use refusal::{Measured, Refusal};

@@ -89,7 +89,7 @@ pub fn rewrite_all(
 }
 
 /// The machine file `text` with the cross-coupling of its gantry so many times as strong.
-pub fn rewrite_coupling(text: &str, factor: f64) -> Result<String, WriteError> {
+fn rewrite_coupling(text: &str, factor: f64) -> Result<String, WriteError> {
     let mut document: DocumentMut = text.parse()?;
     let gantry = document
         .get_mut("gantry")

@@ -57,4 +57,13 @@ fn the_coupling_goes_with_the_lesser_gain_of_both_motors_whichever_is_written_fi
         );
     }
     assert_eq!(coupling(&written(&[&[(Y, &y)]])), coupling(SHIPPED));
+
+    // What stays is left alone, and what was there before is told.
+    let own = "[motors.X1]\nkp = 120.0\n[gantry]\ncoupling = 40.0 # assumed\ncoupling_derivative = 0.0\n";
+    let written = rewrite_all(own, &before, &[(X1, &x2)]).expect("both are in it");
+    assert!(
+        written.ends_with("[gantry]\ncoupling = 20.0 # commissioned; was 40.0\ncoupling_derivative = 0.0\n"),
+        "{written}"
+    );
+    assert!(rewrite_all("[motors.X1]\nkp = 120.0\n", &before, &[(X1, &x2)]).is_err());
 }

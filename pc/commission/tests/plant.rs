@@ -3,8 +3,7 @@
 
 use commission::{
     Capture, Complex, Loop, Margins, Measured, NoFriction, Planned, Refusal, Requirements, Response,
-    SETTLE_PERIODS, TURNS_HZ, WAY, design, friction, plan, plan_at_rest, rewrite, rewrite_coupling, swing,
-    way,
+    SETTLE_PERIODS, TURNS_HZ, WAY, design, friction, plan, plan_at_rest, rewrite, swing, way,
 };
 use plant::{ModeConfig, MotionPlant, MotorConfig as TrueMotor, PlantConfig};
 use plant_file::{PlantChoice, PlantFile};
@@ -379,13 +378,6 @@ fn a_machine_file_keeps_what_it_says_besides() {
     assert!(written.contains("kd = 0.0\n"), "what stays is left alone");
     assert!(written.ends_with("[motors.Z]\nkp = 5.0\n"));
     assert!(rewrite(text, "X1", &designed).is_err());
-    let gantry = "[gantry]\ncoupling = 40.0 # assumed\ncoupling_derivative = 0.0\n";
-    let written = rewrite_coupling(gantry, 0.5).expect("there is one");
-    assert_eq!(
-        written,
-        "[gantry]\ncoupling = 20.0 # commissioned; was 40.0\ncoupling_derivative = 0.0\n"
-    );
-    assert!(rewrite_coupling(text, 0.5).is_err());
     assert!(rewrite("kp = ", "Y", &designed).is_err());
 }
 

@@ -61,6 +61,15 @@ fn assert_refused(output: &Output, because: &str) {
 }
 
 #[test]
+fn every_motor_of_the_other_shipped_machines_is_commissioned() {
+    for machine in ["ac-head", "pipe-welder", "stir-gantry", "wire-arc"] {
+        let told = commission(&shipped(&format!("machines/{machine}.toml")), &[]);
+        let said = String::from_utf8_lossy(&told.stderr);
+        assert_eq!(told.status.code(), Some(0), "{machine}: {said}");
+    }
+}
+
+#[test]
 fn a_machine_whose_loops_swing_welds_when_it_is_commissioned() {
     let folder = tempdir().expect("a folder");
     let machine = folder.path().join("machine.toml");
