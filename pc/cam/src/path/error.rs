@@ -53,7 +53,7 @@ pub enum PathError {
     Empty,
     /// M3, M4, M5 or S on a machine without a spindle.
     #[error(
-        "{place}: {code} needs a spindle, and {machine} has none: switch its beams with M62 P, M63 P and M67 E Q, or let M3, M4, M5 and S do it by laser in [program] of the machine file"
+        "{place}: {code} needs a spindle, and {machine} has none: switch its beams with M62 P, M63 P and M67 E Q, or have M3, M4, M5 and S do it: laser in [program] of the machine file"
     )]
     NoSpindle {
         /// Where in the program.

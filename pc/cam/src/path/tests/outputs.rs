@@ -102,7 +102,7 @@ fn machines_say_what_their_spindle_does_not_do() {
             error,
             format!(
                 "line 2, column 1: M3 needs a spindle, and {machine} has none: switch its beams with M62 P, M63 P \
-                 and M67 E Q, or let M3, M4, M5 and S do it by laser in [program] of the machine file"
+                 and M67 E Q, or have M3, M4, M5 and S do it: laser in [program] of the machine file"
             )
         );
     }
