@@ -12,6 +12,7 @@ mod sentence;
 pub mod table;
 pub mod toml_file;
 pub mod weld_data;
+pub mod work_offsets;
 
 pub use range::{RangeError, in_range};
 pub use sentence::sentence;

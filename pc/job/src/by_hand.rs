@@ -9,6 +9,7 @@ use crate::leading::{Straight, straight};
 use crate::session::{Session, on_path};
 use crate::{Job, JobError, Weld};
 use cam::path::{JogError, PlannedPath, TipMove};
+use config::work_offsets::System;
 use host_link::events::{Event, Phase, Question};
 use host_link::{ByHand, Jog, JogWay};
 use nalgebra::Vector3;
@@ -54,7 +55,7 @@ impl Weld {
         }
     }
 
-    /// Carries out a block, after the checks of a program.
+    /// Carries out a block, after the checks of a program. Where G10 puts coordinate systems, they stay for the blocks after it.
     fn block(&mut self, session: &mut Session, job: &Job, text: &str) -> Result<(), JobError> {
         let options = Options {
             setup: Arc::new(self.planner.setup(&session.motion.reference)),
@@ -62,7 +63,22 @@ impl Weld {
         };
         let program = interpret(&format!("{text}\nM2\n"), options);
         let program = program.map_err(|error| JobError::Block(error.to_string()))?;
-        self.program(session, job, &program)
+        let before = *self.planner.systems();
+        if !program.paths.is_empty() || program.systems == before {
+            self.program(session, job, &program)?;
+        }
+        self.planner.set_systems(program.systems);
+        let are = before.iter().zip(&program.systems).map(|(was, is)| was != is);
+        let set = System::ALL.iter().zip(are).filter(|(_, set)| *set);
+        let set: Vec<_> = set.map(|(system, _)| system.name()).collect();
+        if !set.is_empty() {
+            let text = format!(
+                "set for blocks by hand, until the drives go off: {}",
+                set.join(", ")
+            );
+            session.control.publish(Event::Message(text));
+        }
+        Ok(())
     }
 
     /// Jogs until the machine stands.

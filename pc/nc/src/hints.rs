@@ -3,7 +3,9 @@
 use super::block::{Block, LENGTHS};
 use super::codes::{Code, Group};
 use super::error::SourcePosition;
+use super::explain::{system, system_name};
 use super::interpreter::Interpreter;
+use super::offsets::CoordinateSystem;
 
 /// From here on a whole number of seconds may be one of milliseconds \[s\].
 const LONG_DWELL_S: f64 = 100.0;
@@ -98,6 +100,23 @@ impl Interpreter {
             let text = format!(
                 "P of {code} is in seconds: P{time} is {time} s, where controllers that count milliseconds dwell {} s",
                 time / 1000.0
+            );
+            self.tell_once(text, place);
+        }
+    }
+
+    /// That the coordinate system which holds is elsewhere than the program says, where it is.
+    pub(super) fn tell_system(&mut self, place: SourcePosition) {
+        let index = self.offsets.active;
+        if self.offsets.told.replace(index) == Some(index) {
+            return;
+        }
+        let set = self.setup.systems.get(index);
+        if set.is_some_and(|set| *set != CoordinateSystem::default() && set == self.offsets.system()) {
+            let text = format!(
+                "{} as it was set at the machine: {}",
+                system_name(index),
+                system(self.offsets.system(), self)
             );
             self.tell_once(text, place);
         }

@@ -101,7 +101,7 @@ impl Interpreter {
             setup: setup.clone(),
             optional_stop,
             modal: Modal::new(setup),
-            offsets: Offsets::default(),
+            offsets: Offsets::new(&setup.systems),
             parameters: Parameters::default(),
             nurbs: None,
             at: setup.start,
@@ -418,6 +418,7 @@ impl Interpreter {
             assumes: self.assumed.map(|place| (self.setup.start, place)),
             branches: self.branches,
             welds: self.welds,
+            systems: std::array::from_fn(|index| self.offsets.systems[index]),
             notices: self.notices,
         }
     }

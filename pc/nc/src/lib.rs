@@ -57,6 +57,7 @@ mod waits;
 pub use error::{NcError, Problem, SourcePosition};
 pub use explain::{Told, explain, explain_file};
 pub use laser::Laser;
+pub use offsets::{CoordinateSystem, SYSTEMS};
 pub use program::{
     ArcForm, ArcWay, Blend, ControlPoint, FeedRate, Motion, Move, Notice, NurbsWay, PathControl, Plane,
     Program, ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,

@@ -75,6 +75,7 @@ impl Interpreter {
                 said[axis] = said[axis].or(Some(now[axis]));
             }
         }
+        self.tell_system(place);
         let tip = self.offsets.to_tip(&said.map(|value| value.unwrap_or(0.0)));
         let mut words = Words {
             axes: std::array::from_fn(|axis| said[axis].map(|_| tip[axis])),

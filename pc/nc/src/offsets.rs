@@ -8,7 +8,7 @@ use super::mirror::Foreign;
 use shared::io::AXES;
 
 /// Coordinate systems, G54 to G59.3.
-pub(super) const SYSTEMS: usize = 9;
+pub const SYSTEMS: usize = 9;
 /// Index of the one without an offset, G500, which nothing sets.
 pub(super) const NO_SYSTEM: usize = SYSTEMS;
 
@@ -17,18 +17,21 @@ pub(super) type Coordinates = [f64; AXES];
 
 /// One coordinate system.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct System {
-    pub(super) offset: Coordinates,
+pub struct CoordinateSystem {
+    /// Its origin: X Y Z of the tip \[mm\], A B C \[deg\].
+    pub offset: [f64; AXES],
     /// About Z, counter-clockwise \[deg\].
-    pub(super) rotation: f64,
+    pub rotation: f64,
 }
 
 /// All offsets.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Offsets {
-    pub(super) systems: [System; SYSTEMS + 1],
+    pub(super) systems: [CoordinateSystem; SYSTEMS + 1],
     /// Index of the one that holds.
     pub(super) active: usize,
+    /// Index of the one that was told last to be where it was set at the machine, or not to be.
+    pub(super) told: Option<usize>,
     /// G52 and G92, as they are kept.
     pub(super) local: Coordinates,
     /// Whether that holds.
@@ -40,7 +43,14 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
-    pub(super) fn system(&self) -> &System {
+    /// Those that a program begins with: in the first system, which is G54.
+    pub(super) fn new(systems: &[CoordinateSystem; SYSTEMS]) -> Self {
+        let mut offsets = Self::default();
+        offsets.systems[..SYSTEMS].copy_from_slice(systems);
+        offsets
+    }
+
+    pub(super) fn system(&self) -> &CoordinateSystem {
         &self.systems[self.active]
     }
 
@@ -102,7 +112,7 @@ mod tests {
     #[test]
     fn the_way_back_is_that_of_the_way_there() {
         let mut offsets = Offsets::default();
-        offsets.systems[2] = System {
+        offsets.systems[2] = CoordinateSystem {
             offset: [100.0, -20.0, 3.0, 10.0, 0.0, -90.0],
             rotation: 30.0,
         };

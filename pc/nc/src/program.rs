@@ -2,6 +2,7 @@
 
 use super::block::Block;
 use super::error::SourcePosition;
+use super::offsets::{CoordinateSystem, SYSTEMS};
 use super::reading::RemainingBlocks;
 use super::waits::{Until, Wait};
 use shared::geometry::Turn;
@@ -24,6 +25,8 @@ pub struct Program {
     pub branches: bool,
     /// Names of the weld data that it calls, by the numbers of [`ProgramAction::WeldOn`].
     pub welds: Vec<String>,
+    /// Where G54 to G59.3 are when it ends.
+    pub systems: [CoordinateSystem; SYSTEMS],
     /// What a person should know of how it was read, and what it says itself (MSG, DEBUG, PRINT).
     pub notices: Vec<Notice>,
 }

@@ -1,6 +1,7 @@
 //! What a program begins with: choices of the operator, and what the machine brings along.
 
 use super::laser::Laser;
+use super::offsets::{CoordinateSystem, SYSTEMS};
 use super::program::{PathControl, Plane};
 use shared::io::AXES;
 use std::collections::{BTreeMap, BTreeSet};
@@ -39,6 +40,8 @@ pub struct Setup {
     pub fitted: [bool; AXES],
     /// Axes at G28 and G30 (mm, degrees).
     pub homes: [[f64; AXES]; 2],
+    /// Where G54 to G59.3 are as the program begins.
+    pub systems: [CoordinateSystem; SYSTEMS],
     /// Lengths of tools by number, beyond the tip of the machine along its tool \[mm\]; without any, all end there.
     pub tools: BTreeMap<u32, f64>,
     /// Numbers of M codes that mean nothing here and are passed over, which is told. Those that mean something keep their meaning.
@@ -68,6 +71,7 @@ impl Default for Setup {
             rotary: [None; 3],
             fitted: [true; AXES],
             homes: [[0.0; AXES]; 2],
+            systems: Default::default(),
             tools: BTreeMap::new(),
             passed_over: BTreeSet::new(),
             grbl_commands: false,

@@ -1,6 +1,7 @@
 //! Machines operated by hand: jogs in every way, let go of in every way, and blocks.
 
 use super::*;
+use config::work_offsets::{System, WorkOffset};
 use host_link::spool::Spooling;
 use host_link::{ByHand, Jog, JogWay};
 use shared::io::{AXES, AXIS_NAMES};
@@ -166,4 +167,41 @@ fn blocks_are_checked_as_programs_are_and_what_cannot_be_done_moves_nothing() {
     );
     assert!(told[5].contains("M62"), "{}", told[5]);
     assert!((x(4) - 895.0).abs() < 1e-9);
+}
+
+#[test]
+fn blocks_go_by_the_work_offsets_and_one_that_sets_them_holds_for_those_after_it() {
+    let block = |text: &str| Deed::Asks(ByHand::Block(text.to_owned()));
+    let mut machine = machine();
+    let second = WorkOffset {
+        origin: [0.0, 40.0, 0.0, 0.0, 0.0, 0.0],
+        rotation_deg: 0.0,
+    };
+    machine.work_offsets.set(System::G55, second);
+    let rests = operated(
+        &machine,
+        [
+            block("G0 X900 Y900 Z100 A0 B0 C0"),
+            block("G10 L20 P1 X0"),
+            block("G0 X-5"),
+            block("G55 G0 Y850"),
+            block("G10 L2 P1 X1000000 G0 X0"),
+            block("G0 X5"),
+        ],
+    );
+    let planner = Planner::build(&machine).unwrap();
+    let tip = |index: usize| planner.tip(&rests[index].motion.reference).position_mm;
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-5, "{a} is not {b}");
+    near(tip(2)[0], 900.0);
+    near(tip(3)[0], 895.0);
+    near(tip(4)[1], 890.0);
+    // What is not carried out sets nothing.
+    near(tip(6)[0], 905.0);
+    let told: Vec<_> = rests.iter().map(|rest| rest.told.join("; ")).collect();
+    assert_eq!(told[2], "set for blocks by hand, until the drives go off: G54");
+    assert!(
+        [0, 1, 3, 4, 6].iter().all(|index| told[*index].is_empty()),
+        "{told:?}"
+    );
+    assert!(!told[5].is_empty());
 }

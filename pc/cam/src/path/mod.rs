@@ -41,8 +41,9 @@ pub use weld::WeldError;
 
 use config::machine::{InputNames, MachineFile, OutputNames, PlanningConfig, ProgramConfig};
 use config::weld_data::WeldData;
+use config::work_offsets::{System, WorkOffset};
 use limits::{DRIVES, DriveLimits};
-use nc::{Program, SourcePosition};
+use nc::{CoordinateSystem, Program, SourcePosition};
 use outputs::Switched;
 use shared::config::ProcessIo;
 use shared::geometry::Pose;
@@ -88,6 +89,8 @@ pub struct Planner {
     program: ProgramConfig,
     /// Lengths by number \[mm\].
     tools: BTreeMap<u32, f64>,
+    /// Where G54 to G59.3 are when a program begins.
+    systems: [CoordinateSystem; nc::SYSTEMS],
 }
 
 impl Planner {
@@ -113,6 +116,13 @@ impl Planner {
             planning: machine.planning.clone(),
             program: machine.program.clone(),
             tools: machine.tools.clone(),
+            systems: System::ALL.map(|system| {
+                let WorkOffset { origin, rotation_deg } = machine.work_offsets.of(system);
+                CoordinateSystem {
+                    offset: origin,
+                    rotation: rotation_deg,
+                }
+            }),
         })
     }
 

@@ -4,7 +4,9 @@ use super::targets::Tip;
 use super::tip_of_machine::TipOfMachine;
 use super::{PathError, Planner};
 use config::machine::{ArcPlane, LengthUnit, PathMode};
-use nc::{Blend, Laser, PathControl, Plane, Program, ProgramAction, Setup, TipAndAxes};
+use nc::{
+    Blend, CoordinateSystem, Laser, PathControl, Plane, Program, ProgramAction, SYSTEMS, Setup, TipAndAxes,
+};
 use shared::io::AXES;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -39,6 +41,7 @@ impl Planner {
             rotary: program.rotary_deg.into_array(),
             fitted: self.fitted,
             homes: [park, park],
+            systems: self.systems,
             tools: self.tools.clone(),
             passed_over: program.passed_over.numbers().clone(),
             grbl_commands: program.passed_over.grbl_commands(),
@@ -48,6 +51,16 @@ impl Planner {
             kinematics: Some(Arc::new(kinematics)),
             ..Setup::default()
         }
+    }
+
+    /// Where G54 to G59.3 are when a program begins.
+    pub fn systems(&self) -> &[CoordinateSystem; SYSTEMS] {
+        &self.systems
+    }
+
+    /// Has programs begin with G54 to G59.3 there.
+    pub fn set_systems(&mut self, systems: [CoordinateSystem; SYSTEMS]) {
+        self.systems = systems;
     }
 
     /// The beam that M3, M4, M5 and S switch, where the machine file says one.

@@ -7,6 +7,7 @@ use super::{
 };
 use crate::probe::ProbeUnit;
 use crate::weld_data::WeldData;
+use crate::work_offsets::WorkOffsets;
 use serde::Deserialize;
 use shared::config::{BeamConfig, HeadConfig, MotionConfig, SlideConfig, TrackerConfig, TrackingConfig};
 use shared::control::{GantryConfig, MotorConfig};
@@ -120,6 +121,7 @@ impl TryFrom<Document> for MachineFile {
             outputs,
             inputs,
             welding: WeldData::default(),
+            work_offsets: WorkOffsets::default(),
             process: d.process,
             probe: d.probe,
             planning: d.planning,

@@ -18,6 +18,7 @@ pub use weak_protection::WeakProtection;
 use crate::probe::ProbeUnit;
 use crate::toml_file;
 use crate::weld_data::WeldData;
+use crate::work_offsets::WorkOffsets;
 use document::Document;
 use serde::Deserialize;
 use shared::config::{MotionConfig, TrackerConfig};
@@ -44,6 +45,8 @@ pub struct MachineFile {
     pub inputs: InputNames,
     /// What welds are made with, from a file of its own that belongs to a program; no sets until it was read.
     pub welding: WeldData,
+    /// Where the work lies, from a file of its own beside that of the machine; nowhere else until it was read.
+    pub work_offsets: WorkOffsets,
     /// What the process asks for, if that is known.
     pub process: Option<ProcessConfig>,
     /// The probe that measures surfaces, if the machine has one.
@@ -145,9 +148,12 @@ impl<T> ByAxis<T> {
 }
 
 impl MachineFile {
-    /// Reads the file at `path`.
+    /// Reads the file at `path`, and the work offsets beside it.
     pub fn read(path: &Path) -> Result<Self, MachineError> {
-        Self::parse(&path.display().to_string(), &toml_file::text(WHAT, path)?)
+        Ok(Self {
+            work_offsets: WorkOffsets::beside(path)?,
+            ..Self::parse(&path.display().to_string(), &toml_file::text(WHAT, path)?)?
+        })
     }
 
     /// Understands `text`; `path` is used in messages only.

@@ -112,7 +112,7 @@ fn begun(machine: &MachineFile, title: &str, speed_m_min: f64) -> NcText {
     nc.comment(title);
     nc.comment(&format!("machine {}, {speed_m_min} m/min", machine.name));
     nc.comment("X Y Z: tip [mm], A B C: head [deg], V1 V2: slides that keep the defocus [mm]");
-    nc.block("G21 G17 G90 G94 G40 G54 G64");
+    nc.block("G21 G17 G90 G94 G40 G500 G64");
     nc.block("G43.4");
     nc
 }

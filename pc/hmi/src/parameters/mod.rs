@@ -176,12 +176,13 @@ impl Parameters {
         std::fs::read_to_string(&self.file).ok().as_ref() != Some(&self.loaded)
     }
 
-    /// Whether `machine`, which a program was planned for, is that of the file as it was loaded; weld data are no matter.
+    /// Whether `machine`, which a program was planned for, is that of the file as it was loaded; what is in files of its own is no
+    /// matter.
     pub fn is_of(&self, machine: &MachineFile) -> bool {
         self.machine.as_ref().is_some_and(|own| {
-            let welding = machine.welding.clone();
             MachineFile {
-                welding,
+                welding: machine.welding.clone(),
+                work_offsets: machine.work_offsets.clone(),
                 ..own.clone()
             } == *machine
         })

@@ -10,6 +10,8 @@ mod modes;
 mod motions;
 mod words;
 
+pub(super) use modes::{system, system_name};
+
 use super::error::{NcError, Problem, SourcePosition};
 use super::program::Program;
 use super::reader::{Kind, Ran, Reader};

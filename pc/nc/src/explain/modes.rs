@@ -4,7 +4,7 @@ use super::before::Before;
 use super::words::{coordinates, figure};
 use crate::codes::Code;
 use crate::interpreter::Interpreter;
-use crate::offsets::{Coordinates, NO_SYSTEM, System};
+use crate::offsets::{CoordinateSystem, Coordinates, NO_SYSTEM};
 use crate::program::{Blend, PathControl, Plane};
 use shared::geometry::Turn;
 
@@ -178,7 +178,8 @@ fn offsets(before: &Before, after: &Interpreter) -> Vec<String> {
     changes
 }
 
-fn system(system: &System, after: &Interpreter) -> String {
+/// Where a coordinate system is.
+pub(crate) fn system(system: &CoordinateSystem, after: &Interpreter) -> String {
     let origin = of_fitted(&system.offset, after);
     match system.rotation {
         0.0 => format!("origin at {origin}"),
@@ -187,7 +188,7 @@ fn system(system: &System, after: &Interpreter) -> String {
 }
 
 /// G54 to G59.3 by its index.
-pub(super) fn system_name(index: usize) -> &'static str {
+pub(crate) fn system_name(index: usize) -> &'static str {
     match index {
         NO_SYSTEM => Code::NoSystem.name(),
         index => Code::System(index as u8 + 1).name(),

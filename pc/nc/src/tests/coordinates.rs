@@ -54,6 +54,49 @@ fn systems_and_local_offsets_add_up() {
 }
 
 #[test]
+fn systems_that_were_set_at_the_machine_hold_until_the_program_says_otherwise_and_are_told() {
+    let mut setup = Setup::default();
+    setup.systems[0].offset[0] = 100.0;
+    setup.systems[2].rotation = 90.0;
+    let options = Options {
+        setup: Arc::new(setup),
+        ..Options::default()
+    };
+    let run = |body: &str| interpret(&format!("G21 G0 Y0 Z0\n{body}\nM2"), options.clone()).unwrap();
+    let ends = |body: &str| -> Vec<_> {
+        let paths = run(body).paths;
+        let words = paths.iter().map(|path| path.targets[0].words.axes);
+        words
+            .map(|axes| [axes[0].unwrap_or(0.0), axes[1].unwrap_or(0.0)])
+            .collect()
+    };
+    assert_eq!(
+        ends("X1\nG55 X1\nG500 X2\nG10 L2 P1 X5\nG54 X1")[1..],
+        [[101.0, 0.0], [1.0, 0.0], [2.0, 0.0], [6.0, 0.0]]
+    );
+    let told = |body: &str| -> Vec<_> {
+        let notices = run(body).notices;
+        notices
+            .into_iter()
+            .map(|notice| (notice.place.line, notice.text))
+            .collect()
+    };
+    let first = "G54 as it was set at the machine: origin at X100 Y0 Z0 mm, A0 B0 C0 deg".to_owned();
+    let turned =
+        "G56 as it was set at the machine: origin at X0 Y0 Z0 mm, A0 B0 C0 deg, turned by 90 deg about Z";
+    assert_eq!(
+        told("X1\nG56 X1\nG54 X1\nG56 X1"),
+        [(1, first), (3, turned.to_owned())]
+    );
+    let program = interpret(
+        "G500 G21 G0 X1 Y0\nG55 X1\nG10 L2 P1 X0\nG54 X1\nM2",
+        options.clone(),
+    )
+    .unwrap();
+    assert_eq!(program.notices, []);
+}
+
+#[test]
 fn polar_coordinates_are_about_the_origin_of_the_program() {
     let ends = ends("G0 @10 ^30\n^120\nG91 @-5 ^60\nM2");
     let angles = [(10.0, 30f64), (10.0, 120.0), (5.0, 180.0)];

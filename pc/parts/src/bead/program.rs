@@ -60,7 +60,7 @@ pub(super) fn write(
         nc.comment(note);
     }
     nc.comment("X Y Z: tip in the frame of the part [mm], A B C: axes [deg]; after G53 all are axes");
-    nc.block("G21 G17 G90 G94 G40 G54 G64");
+    nc.block("G21 G17 G90 G94 G40 G500 G64");
     nc.block("G43.4");
     for (index, pass) in passes.iter().enumerate() {
         let [first, last] = [0, pass.stations.len() - 1].map(|i| &pass.stations[i]);

@@ -160,7 +160,7 @@ impl Panel {
             machine.name, self.speed_m_min
         ));
         nc.comment("X Y Z: focus [mm], A C: head [deg]; with G53 the axes");
-        nc.block("G21 G17 G90 G94 G40 G54 G64");
+        nc.block("G21 G17 G90 G94 G40 G500 G64");
         nc.comment("approach");
         nc.block(&format!("G53 G0 Z{}", decimal(high, LENGTH_DECIMALS)));
         nc.block(&format!(

@@ -117,7 +117,7 @@ fn write(part: &Saddle, rounds: &[Round], torch_mm: f64, context: &PartContext, 
     nc.comment(
         "X Y Z: tip in the frame of the branch [mm], B: tilt, C: waist [deg]; after G53 the axes themselves",
     );
-    nc.block("G21 G17 G90 G94 G40 G54 G64");
+    nc.block("G21 G17 G90 G94 G40 G500 G64");
     nc.block("G43.4");
     for (index, (pass, round)) in part.passes.iter().zip(rounds).enumerate() {
         let [first, last] = round.ends();

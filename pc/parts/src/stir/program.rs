@@ -25,7 +25,7 @@ pub(super) fn write(part: &Stir, job: &Job, context: &PartContext) -> String {
         context.machine.name, part.travel_mm_min, part.spindle_r_min, part.tilt_deg
     ));
     nc.comment("X Y Z: tip of the pin [mm], B C: tilt and turn of the head [deg], E0: spindle [r/min]");
-    nc.block("G21 G17 G90 G94 G40 G54 G64");
+    nc.block("G21 G17 G90 G94 G40 G500 G64");
     nc.block("G43.4");
     for (index, pass) in job.passes.iter().enumerate() {
         if index > 0 {

@@ -39,7 +39,7 @@ pub(super) fn plan(
         nc.comment(note);
     }
     nc.comment("X Y Z: tip in the frame of the work [mm], A B C: axes [deg]; after G53 all are axes");
-    nc.block("G21 G17 G90 G94 G40 G54");
+    nc.block("G21 G17 G90 G94 G40 G500");
     nc.block("G43.4");
     let corners = part.corner_mm;
     nc.block(&corners.map_or("G64".to_owned(), |mm| format!("G64 P{}", decimal(mm, 5))));
