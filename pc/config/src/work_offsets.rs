@@ -14,6 +14,9 @@ const WHAT: &str = "work offsets";
 /// What the file begins with.
 const HEAD: &str = "# Where the work lies: the origin of each coordinate system (mm, degrees).\n";
 
+/// Largest offset (mm, degrees).
+pub const MOST: f64 = 100_000.0;
+
 /// A coordinate system of programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "codes")]
@@ -205,9 +208,9 @@ impl TryFrom<f64> for Bounded {
 
     fn try_from(value: f64) -> Result<Self, String> {
         // NaN is none.
-        match value.abs() <= 100_000.0 {
+        match value.abs() <= MOST {
             true => Ok(Self(value)),
-            false => Err(format!("{value} is no offset: it must be from -100000 to 100000")),
+            false => Err(format!("{value} is no offset: it must be from -{MOST} to {MOST}")),
         }
     }
 }

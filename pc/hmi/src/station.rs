@@ -2,6 +2,7 @@
 
 mod commissioning;
 mod guarded;
+mod work_offsets;
 
 use crate::access::Access;
 use crate::live::{Journal, Live};
@@ -56,6 +57,8 @@ pub enum Action {
     Off,
     /// Another place of a part that is being taught.
     Teach,
+    /// Other work offsets.
+    WorkOffsets,
     /// Another machine file.
     Write,
     /// Motors are measured, or a circle is made.
@@ -200,7 +203,7 @@ impl Station {
         let heard = running && self.live.silent_for(now).is_none();
         match action {
             // What opens for it covers Stop.
-            Action::Load => {
+            Action::Load | Action::WorkOffsets => {
                 let rests = self.running.is_none() || self.makes_sense(Action::ByHand, now);
                 rests && self.loading.is_none()
             }

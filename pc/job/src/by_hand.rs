@@ -72,10 +72,7 @@ impl Weld {
         let set = System::ALL.iter().zip(are).filter(|(_, set)| *set);
         let set: Vec<_> = set.map(|(system, _)| system.name()).collect();
         if !set.is_empty() {
-            let text = format!(
-                "set for blocks by hand, until the drives go off: {}",
-                set.join(", ")
-            );
+            let text = format!("set for the blocks by hand that follow: {}", set.join(", "));
             session.control.publish(Event::Message(text));
         }
         Ok(())

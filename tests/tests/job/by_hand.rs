@@ -198,7 +198,7 @@ fn blocks_go_by_the_work_offsets_and_one_that_sets_them_holds_for_those_after_it
     // What is not carried out sets nothing.
     near(tip(6)[0], 905.0);
     let told: Vec<_> = rests.iter().map(|rest| rest.told.join("; ")).collect();
-    assert_eq!(told[2], "set for blocks by hand, until the drives go off: G54");
+    assert_eq!(told[2], "set for the blocks by hand that follow: G54");
     assert!(
         [0, 1, 3, 4, 6].iter().all(|index| told[*index].is_empty()),
         "{told:?}"

@@ -192,6 +192,11 @@ impl Journal {
     pub fn written(&mut self, at: Duration, file: &str, version: &str, changes: &[Change]) {
         let what = What::FileWritten(file.to_owned(), version.to_owned());
         self.add(at, Severity::Note, what);
+        self.changed(at, changes);
+    }
+
+    /// Values are others now.
+    pub fn changed(&mut self, at: Duration, changes: &[Change]) {
         for change in changes {
             self.add(at, Severity::Note, What::Parameter(change.clone()));
         }

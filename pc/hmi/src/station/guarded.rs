@@ -19,7 +19,7 @@ impl Action {
             | Self::Back
             | Self::Override
             | Self::Off => Level::Operator,
-            Self::Home | Self::ByHand | Self::Jog | Self::Teach => Level::Setter,
+            Self::Home | Self::ByHand | Self::Jog | Self::Teach | Self::WorkOffsets => Level::Setter,
             Self::Write | Self::Commission => Level::Engineer,
         }
     }

@@ -196,7 +196,6 @@ texts! {
     // Welds
     NoWelds: "There are no reports in {} yet.", "{} 中还没有报告。", "In {} sind noch keine Berichte.";
     Figure: "Figure", "指标", "Größe";
-    Value: "Value", "数值", "Wert";
     MayBe: "May be", "允许", "Erlaubt";
     Compare: "Compare with", "对比", "Vergleichen mit";
     Duration: "Duration", "用时", "Dauer";
@@ -210,6 +209,17 @@ texts! {
     HomeWarning: "The drives go on, and every axis searches its reference mark, in the sequence of the machine file. Keep clear of the machine.", "驱动将接通，各轴按机器文件中的顺序寻找参考点。请远离机器。", "Die Antriebe gehen an, und jede Achse sucht ihre Referenzmarke in der Reihenfolge der Maschinendatei. Abstand von der Maschine halten.";
     DrivesOff: "Drives off", "断开驱动", "Antriebe aus";
     ProgramRuns: "A program runs: nothing can be set up meanwhile.", "程序正在运行：此时不能调整。", "Ein Programm läuft: solange kann nichts eingerichtet werden.";
+    WorkOffsets: "Work offsets…", "工件偏置…", "Nullpunkte…";
+    WorkOffsetsTitle: "Work offsets", "工件偏置", "Nullpunktverschiebungen";
+    WorkOffsetsHint: "Where the origin of each coordinate system lies, for programs that call it and for blocks by hand. Programs planned from a part are not moved by it.", "各坐标系原点的位置，用于调用该坐标系的程序和手动程序段。由工件规划的程序不受其影响。", "Wo der Ursprung jedes Koordinatensystems liegt, für Programme, die es aufrufen, und für Sätze von Hand. Aus einem Teil geplante Programme werden davon nicht verschoben.";
+    Origin: "Origin", "原点", "Ursprung";
+    TipIn: "Tip in {}", "{} 中的刀尖", "Spitze in {}";
+    TurnAboutZ: "Turn about Z", "绕 Z 旋转", "Drehung um Z";
+    Value: "Value", "数值", "Wert";
+    OriginIs: "Set origin to value", "将原点设为数值", "Ursprung auf Wert";
+    TipIs: "Set tip here to value", "将此处刀尖设为数值", "Spitze hier auf Wert";
+    NotAnOffset: "Not a number from -100000 to 100000.", "不是 -100000 到 100000 之间的数。", "Keine Zahl von -100000 bis 100000.";
+    Save: "Save", "保存", "Speichern";
     Positions: "Positions", "位置", "Positionen";
     TipOfTool: "Tip in the work", "工具尖点（工件坐标）", "Spitze im Werkstück";
     NotHomed: "The drives are off: home first.", "驱动已断开：请先回零。", "Die Antriebe sind aus: zuerst referenzieren.";

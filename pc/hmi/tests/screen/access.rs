@@ -15,11 +15,12 @@ use std::time::Duration;
 const SETTER: &str = "1357";
 const ENGINEER: &str = "24680";
 /// What needs a level, with that.
-const NEED: [(Action, Level); 7] = [
+const NEED: [(Action, Level); 8] = [
     (Action::Home, Level::Setter),
     (Action::ByHand, Level::Setter),
     (Action::Jog, Level::Setter),
     (Action::Teach, Level::Setter),
+    (Action::WorkOffsets, Level::Setter),
     (Action::Write, Level::Engineer),
     (Action::Commission, Level::Engineer),
     (Action::Stop, Level::Operator),

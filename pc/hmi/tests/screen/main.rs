@@ -13,3 +13,4 @@ mod watching;
 mod whole_day;
 #[cfg(target_os = "linux")]
 mod window;
+mod work_offsets;

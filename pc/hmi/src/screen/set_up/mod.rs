@@ -3,6 +3,7 @@
 mod block;
 mod homing;
 mod positions;
+mod work_offsets;
 
 use super::{View, access, bare, jog, title};
 use crate::station::{Action, Station};
@@ -23,6 +24,8 @@ pub(in crate::screen) struct SetUpPage {
     block: block::Entry,
     /// The question before homing is open.
     asks: bool,
+    /// Work offsets are being set, or why they cannot be.
+    offsets: Option<Result<work_offsets::Dialog, String>>,
 }
 
 impl SetUpPage {
@@ -34,6 +37,7 @@ impl SetUpPage {
                 self.drives(ui, view, station);
                 ui.add_space(6.0);
                 positions::show(ui, view, station);
+                self.offsets(ui, view, station);
                 ui.add_space(6.0);
                 homing::show(ui, view, station);
             });
@@ -48,6 +52,22 @@ impl SetUpPage {
             .show(ui, |ui| panel.show(ui, view, station));
         if self.asks {
             self.ask(ui, view, station);
+        }
+        if let Some(Ok(dialog)) = &mut self.offsets
+            && !dialog.show(ui, view, station)
+        {
+            self.offsets = None;
+        }
+    }
+
+    fn offsets(&mut self, ui: &mut Ui, view: &View, station: &Station) {
+        let button = Button::new(view.words.say(Text::WorkOffsets)).min_size([LARGE[0], 44.0].into());
+        let may = station.may(Action::WorkOffsets, view.now);
+        if ui.add_enabled(may, button).clicked() {
+            self.offsets = Some(work_offsets::Dialog::open(station));
+        }
+        if let Some(Err(error)) = &self.offsets {
+            ui.add(Label::new(RichText::new(error).color(view.theme.bad)).wrap());
         }
     }
 

@@ -1,0 +1,97 @@
+//! Work offsets: set where the tip stands and by value, kept, and gone by.
+
+use crate::bench::{Bench, waits};
+use config::work_offsets::{System, WorkOffset, WorkOffsets};
+use eframe::egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use hmi::screen::Page;
+use hmi::station::Station;
+use host_link::{ByHand, Command};
+use std::time::Duration;
+
+/// Taps the value of what is called `name`.
+fn choose(bench: &mut Bench, name: &str) {
+    bench.harness.get_by_role_and_label(Role::Button, name).click();
+    bench.harness.run_steps(3);
+}
+
+fn tip(station: &Station) -> [f64; 3] {
+    let axes = station.live.motion.as_ref().expect("a state").axes;
+    let machine = station.by_hand().expect("a machine");
+    machine.planner.tip(&axes).position_mm.into()
+}
+
+#[test]
+fn a_work_offset_is_set_where_the_tip_stands_kept_on_record_and_blocks_by_hand_go_by_it() {
+    let (mut bench, file) = Bench::with_own_file();
+    let program = bench.folder.path().join("square.ngc");
+    let square = "G21 G90 G54 G64 P0.05\nG0 X0 Y0 Z20 A0 B0 C0\nG1 X50 F3000\nY50\nX0\nY0\nM2\n";
+    std::fs::write(&program, square).expect("written");
+    bench.open(Page::SetUp);
+    bench.tap("Home…");
+    bench.tap("Home now");
+    bench.until("it is ready", waits);
+    bench.block("G0 X900 Y900 Z100 A0 B0 C0");
+
+    bench.tap("Work offsets…");
+    choose(&mut bench, "X");
+    bench.tap("Set tip here to value");
+    choose(&mut bench, "Y");
+    bench.type_in("Value", "12");
+    bench.tap(".");
+    bench.tap("5");
+    bench.tap("Set tip here to value");
+    bench.tap("G59.1");
+    bench.type_in("Value", "x");
+    assert!(bench.says("Not a number from"));
+    bench.type_in("Value", "0,25");
+    choose(&mut bench, "Turn about Z");
+    bench.tap("Set origin to value");
+    bench.pictures("work-offsets", |bench| bench.tap("● G54"));
+    bench.tap("Save");
+    bench.until("blocks by hand go by it", |station| {
+        waits(station) && station.live.told.is_some()
+    });
+
+    let kept = WorkOffsets::beside(&file).expect("work offsets");
+    let first = kept.of(System::G54);
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 0.01, "{a} is not {b}");
+    near(first.origin[0], 900.0);
+    near(first.origin[1], 887.5);
+    assert_eq!(first.origin[2..], [0.0; 4]);
+    let turned = WorkOffset {
+        rotation_deg: 0.25,
+        ..WorkOffset::default()
+    };
+    assert_eq!(kept.of(System::G59_1), turned);
+    let block = Command::ByHand(ByHand::Block("G0 X-5".to_owned()));
+    bench.station().send(block, Duration::ZERO);
+    bench.until("it is 5 mm beside the origin", |station| {
+        waits(station) && (tip(station)[0] - 895.0).abs() < 0.01
+    });
+    bench.tap("Drives off");
+    bench.until("the drives are off", |station| !station.is_running());
+    bench.open(Page::Alarms);
+    assert!(bench.says("G54.X: 0 → ") && bench.says("G59.1.rotation_deg: 0 → 0.25"));
+
+    // A program that calls it is there, and it is told.
+    bench.load(program.to_str().expect("a name"));
+    let loaded = bench.station().loaded().expect("a program").clone();
+    let end = loaded.drawn.way.places.last().expect("a way").pose.position;
+    near(end.x, first.origin[0]);
+    near(end.y, first.origin[1]);
+    let told = loaded
+        .notices
+        .iter()
+        .any(|notice| notice.contains("G54 as it was set at the machine"));
+    assert!(told, "{:?}", loaded.notices);
+
+    // What would lie beyond the travel is not loaded, and a file that is wrong is told by its line.
+    std::fs::write(WorkOffsets::file(&file), "[G54]\nX = 5000.0\n").expect("written");
+    bench.station().load(program.clone(), None);
+    bench.until("it is refused", |station| station.refused().is_some());
+    std::fs::write(WorkOffsets::file(&file), "[G54]\nW = 1.0\n").expect("written");
+    bench.open(Page::SetUp);
+    bench.tap("Work offsets…");
+    assert!(bench.says("dual-beam-gantry.offsets.toml, line 2: "));
+}
