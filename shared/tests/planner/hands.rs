@@ -3,11 +3,13 @@
 //! told, not only the first.
 
 use super::bench::{self, Bench};
+use super::judge::Verdict;
 use super::random::{any_acts, frame, moves, verdict};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{RngSeed, TestRunner};
 use std::fmt::Debug;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -27,9 +29,8 @@ where
     strategy.new_tree(runner).expect("nothing is filtered").current()
 }
 
-/// The program of a `seed`, with hands at the controls: how long its slowest hold took, as a share of what it may, or what
-/// is wrong with how it runs.
-fn one(seed: u64) -> Result<f64, String> {
+/// The program of a `seed`, with hands at the controls: how it ran, or what is wrong with that.
+fn one(seed: u64) -> Result<Verdict, String> {
     let mut runner = TestRunner::new(ProptestConfig {
         rng_seed: RngSeed::Fixed(seed),
         ..ProptestConfig::default()
@@ -45,7 +46,7 @@ fn one(seed: u64) -> Result<f64, String> {
     let (moves, acts) = (value(&moves(), &mut runner), value(&any_acts(), &mut runner));
     let result = catch_unwind(AssertUnwindSafe(|| verdict(&bench, &moves, &acts)));
     let wrong = match result {
-        Ok(Ok(verdict)) if verdict.faults().is_empty() => return Ok(verdict.hold.value),
+        Ok(Ok(verdict)) if verdict.faults().is_empty() => return Ok(verdict),
         Ok(Ok(verdict)) => verdict.faults().join("; "),
         Ok(Err(stuck)) => stuck.to_string(),
         Err(_) => "it panics".to_owned(),
@@ -76,7 +77,7 @@ fn what_once_failed_passes() {
 fn many() {
     let (programs, first) = (number(PROGRAMS, 1000), number(SEED, 0));
     let next = AtomicU64::new(first);
-    let holds = Mutex::new(Vec::new());
+    let runs = Mutex::new(Vec::new());
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
         for _ in 0..threads {
@@ -86,18 +87,26 @@ fn many() {
                     if seed >= first + programs {
                         break;
                     }
-                    match one(seed) {
-                        Ok(hold) => holds.lock().expect("no panic").push(hold),
-                        Err(wrong) => println!("{wrong}"),
+                    let run = one(seed);
+                    if let Err(wrong) = &run {
+                        println!("{wrong}");
                     }
+                    runs.lock().expect("no panic").push((seed, run));
                 }
             });
         }
     });
-    let holds = holds.into_inner().expect("no panic");
+    let mut runs = runs.into_inner().expect("no panic");
+    runs.sort_by_key(|(seed, _)| *seed);
+    let mut digest = DefaultHasher::new();
+    format!("{runs:?}").hash(&mut digest);
+    let digest = digest.finish();
+    let verdicts = runs.into_iter().filter_map(|(_, run)| run.ok());
+    let holds: Vec<f64> = verdicts.map(|verdict| verdict.hold.value).collect();
     let failed = programs - holds.len() as u64;
     let held: Vec<f64> = holds.into_iter().filter(|hold| *hold > 0.0).collect();
     let mean = held.iter().sum::<f64>() / held.len().max(1) as f64;
     println!("{failed} of {programs} programs failed; a hold took {mean:.4} of the time it may, in the mean");
+    println!("digest of all verdicts, the same while no reference changes: {digest:016x}");
     assert_eq!(failed, 0);
 }

@@ -8,9 +8,9 @@ fn the_shipped_weld_keeps_its_limits_on_simulated_boards() {
     let report = welded(&machine("stir-gantry"), &text("programs/stir-contour.ngc"), &part);
     assert_eq!(exceeded(&report), [""; 0], "{report}");
     // Far below what is published, as gratings close the loops.
-    assert!(value(&report, "max_heading_error_deg") < 0.006, "{report}");
-    // Most of it is what the output filter of the planner takes where the pin turns.
-    assert!(value(&report, "max_contour_distance_mm") < 0.006, "{report}");
+    assert!(value(&report, "max_heading_error_deg") < 0.004, "{report}");
+    // Where the first arc begins: Y has stood since homing, and static friction holds it until the loop pushes.
+    assert!(value(&report, "max_contour_distance_mm") < 0.0015, "{report}");
     for key in ["mae_x_mm", "mae_y_mm"] {
         assert!(value(&report, key) < 0.002, "{report}");
     }

@@ -4,9 +4,9 @@
 //! that the acceleration has to go: where the limit of jerk does not allow this at once, it is let go from an earlier
 //! node on, the last from which it is in time.
 
-use super::horizon::{Horizon, LEAST_WINDOW, Phase, VISIT};
+use super::horizon::{Horizon, Phase, VISIT, WINDOW};
 use super::limits::{Bounds, PATH_ROW, ROWS};
-use super::node::{Lanes, Node, Nodes, least, most, pause};
+use super::node::{EMPTY, Lanes, Node, Nodes, REST, include, least, most, pause};
 use super::scan::lowest;
 use super::split::{SLIVER, part};
 
@@ -92,14 +92,14 @@ impl Horizon {
             return;
         }
         let beyond = self.settled + 1;
-        for later in beyond..=self.braked.max(beyond).min(self.in_force()) {
+        for later in beyond..=self.braked.max(beyond).min(self.in_force) {
             nodes.at_mut(later).brake = 0.0;
         }
         // Nodes far beyond would only take time now; they are planned when it is obeyed. In a later round that may be farther.
-        let near = self.braked.max(self.settled) + LEAST_WINDOW / self.patience;
-        self.last = match near < self.in_force() && nodes.at(near - 1).limit > 0.0 {
+        let near = self.braked.max(self.settled) + WINDOW / 2 / self.patience;
+        self.last = match near < self.in_force && nodes.at(near - 1).limit > 0.0 {
             true => near,
-            false => self.in_force(),
+            false => self.in_force,
         };
         nodes.at_mut(self.last).reach = 0.0;
         self.phase = Phase::Back(self.last);
@@ -122,9 +122,7 @@ impl Horizon {
         };
         let from = node.time - bounds.filter;
         let to = libm::fmin(passes(node, end(boxes)) - bounds.filter, node.time);
-        while self.away < i && nodes.at(self.away + 1).time <= from {
-            self.away += 1;
-        }
+        self.away = nodes.passed(self.away, [self.history, i], from);
         let was = self.along_path(nodes, [self.away, i], [from, to], bounds);
         // The plan in force has kept to what the past demands.
         let in_force = ((next.x - node.x) / (2.0 * node.delta)) as f32;
@@ -150,18 +148,13 @@ impl Horizon {
     /// the speed has come down with no more than may change so, for as long as the output filter remembers.
     fn release_from<const N: usize>(&mut self, nodes: &mut Nodes<N>, from: u32, bounds: &Bounds) -> bool {
         let mut away = from;
-        for i in from..self.in_force() {
+        for i in from..self.in_force {
             self.work += VISIT / 2;
             self.open(nodes, i, bounds);
             let (node, next) = (nodes.at(i), nodes.at(i + 1));
             let (x, change) = (node.brake, most_change(node, bounds));
             let since = node.time - bounds.filter;
-            while away > self.history && nodes.at(away).time > since {
-                away -= 1;
-            }
-            while away < i && nodes.at(away + 1).time <= since {
-                away += 1;
-            }
+            away = nodes.passed(away, [self.history, i], since);
             let until = since + passes(node, x) - node.time;
             let highest = self.strongest(nodes, [away, i], until) + change;
             let floor = if i < self.braked {
@@ -183,9 +176,7 @@ impl Horizon {
             }
             go_to(nodes, i, end_x, bounds);
             let arrived = nodes.at(i + 1).time - pause(nodes.at(i + 1), bounds);
-            while away < i && nodes.at(away + 1).time <= arrived - bounds.filter {
-                away += 1;
-            }
+            away = nodes.passed(away, [self.history, i], arrived - bounds.filter);
             if -self.strongest(nodes, [away, i + 1], arrived) <= change {
                 self.settled = i + 1;
                 return true;
@@ -249,28 +240,25 @@ impl Horizon {
         [from, to]: [f64; 2],
         bounds: &Bounds,
     ) -> [Lanes; 2] {
-        let (mut low, mut high) = ([f32::INFINITY; ROWS], [f32::NEG_INFINITY; ROWS]);
-        let mut include = |alpha: &Lanes, a: f32| {
-            for row in 0..ROWS {
-                low[row] = least(alpha[row] * a, low[row]);
-                high[row] = most(alpha[row] * a, high[row]);
-            }
-        };
+        let mut range = EMPTY;
         if nodes.at(first).time > from || nodes.at(beyond).time < to {
-            include(&[1.0; ROWS], 0.0);
+            include(&mut range, &REST);
         }
         let mut i = first;
         while i < beyond && nodes.at(i).time <= to {
             self.work += 1;
             for side in &nodes.at(i).sides {
-                include(&side.alpha, side.allowed[PATH_ROW]);
+                include(
+                    &mut range,
+                    &side.alpha.map(|alpha| alpha * side.allowed[PATH_ROW]),
+                );
             }
             i += 1;
             if pause(nodes.at(i), bounds) > 0.0 {
-                include(&[1.0; ROWS], 0.0);
+                include(&mut range, &REST);
             }
         }
-        [low, high]
+        range
     }
 }
 

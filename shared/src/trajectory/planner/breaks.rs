@@ -1,6 +1,7 @@
 //! Where limits change along the path.
 
 use super::channels::{SAME, SMOOTH};
+use super::corner::SHARP;
 use super::limits::Bounds;
 use super::node::{greater, lesser};
 use super::track::{Piece, Track};
@@ -9,10 +10,9 @@ use nalgebra::Vector3;
 
 /// Most junctions that are looked at.
 pub(super) const MOST_LOOKS: u32 = 16;
-/// A turn of a sharp corner \[rad\].
-const SHARP: f64 = 0.5;
-/// Another feed for a shorter time than this is as good as the lower one \[s\].
-const SHORT: f64 = 0.0005;
+/// Nodes are no nearer than this where only what nothing feels is between them, and another feed for a shorter time is as good as
+/// the lower one \[s\].
+pub(super) const MERGE: f64 = 0.0005;
 
 /// Where limits change next.
 #[derive(Clone, Copy, Debug)]
@@ -116,7 +116,7 @@ impl<const E: usize> Track<E> {
         };
         let seen = way_to(far_s);
         let slower = lesser(feed, next.feed);
-        let alike = feed == next.feed || k == 0 || seen <= SHORT * slower;
+        let alike = feed == next.feed || k == 0 || seen <= MERGE * slower;
         search.seen_s = far_s;
         let smooth = corner.is_none_or(|piece| !piece.stop && piece.corner.others <= SMOOTH);
         let near = bounds.unfelt_way;

@@ -4,14 +4,13 @@
 //! Rounding and the output filter both cut corners on the inside. Moved outward by half of what they cut, a corner
 //! is off by that much inside, and the middle of a line by as much outside.
 
+use super::corner::SHARP;
 use super::limits::{Bounds, FILTER_SHARE};
 use super::room::{plain, room};
 use super::track::Track;
 use crate::trajectory::{Cubic, Join, SHAPED, Shape};
 use nalgebra::Vector3;
 
-/// Corners of a chain turn by less than this \[rad\].
-const TURN: f64 = 0.5;
 /// Cosine of the angle between the changes of direction at two neighbouring corners: at most 30°.
 const SAME_SENSE: f64 = 0.866;
 /// Largest ratio of the lengths of neighbouring lines.
@@ -45,7 +44,7 @@ impl<const E: usize> Track<E> {
         straight
             && self
                 .turn(serial)
-                .is_some_and(|turn| turn.norm_squared() < TURN * TURN && turn.norm_squared() > 0.0)
+                .is_some_and(|turn| turn.norm_squared() < SHARP * SHARP && turn.norm_squared() > 0.0)
     }
 
     /// Change of the programmed direction at the start of element `serial`.
@@ -63,7 +62,7 @@ impl<const E: usize> Track<E> {
         let lengths = [before.element.length, after.element.length];
         let even = lengths[0] < RATIO * lengths[1] && lengths[1] < RATIO * lengths[0];
         let others_turn = after.corner.jump[SHAPED..].iter().any(|jump| *jump != 0.0);
-        if !(before.straight && after.straight && even && turn > 0.0 && turn < TURN)
+        if !(before.straight && after.straight && even && turn > 0.0 && turn < SHARP)
             || after.stop
             || others_turn
         {
@@ -74,7 +73,7 @@ impl<const E: usize> Track<E> {
             let (along, square) = (other.dot(&after.turn), other.norm_squared());
             along > 0.0
                 && along * along > SAME_SENSE * SAME_SENSE * turn * turn * square
-                && square < TURN * TURN
+                && square < SHARP * SHARP
         };
         let wanted = room(before, after, turn, bounds);
         if plain(turn, tolerance.position) >= wanted || !(alike(serial - 1) && alike(serial + 1)) {

@@ -4,6 +4,9 @@ use super::channels::{ATTITUDE, attitude_norm, position_norm};
 use crate::trajectory::{CHANNELS, PathPoint, SHAPED};
 use nalgebra::Vector3;
 
+/// A corner that turns by this or more is sharp: it has a place where the acceleration turns, and is in no chain \[rad\].
+pub(super) const SHARP: f64 = 0.5;
+
 /// A corner: a jump of the direction, spread over `half` \[mm\] of path length on both sides.
 ///
 /// It adds jump·h·(1−|y|)²/4 with y = (s − s₀)/h, so the direction changes evenly: the curve of least peak

@@ -5,16 +5,19 @@ use crate::io::AXES;
 use crate::kinematics::AxisMotion;
 use crate::trajectory::SpeedState;
 
+/// Position, velocity and acceleration of the axes, and s, v and a.
+type Values = [f64; 3 * AXES + 3];
+
 /// A mean over a fixed number of ticks, the same for all, so that what moves together stays together.
 ///
 /// It is linear: the mean of the velocities is the velocity of the mean.
 #[derive(Clone, Debug)]
 pub(super) struct Filter {
-    position: Mean<AXES>,
-    velocity: Mean<AXES>,
-    acceleration: Mean<AXES>,
-    /// s, v and a.
-    along: Mean<3>,
+    ring: [Values; MAX_FILTER],
+    /// Sum over the ring.
+    sum: Values,
+    /// Sum of what was written since the last wrap; becomes `sum` at the next, so rounding cannot add up.
+    fresh: Values,
     length: usize,
     /// One divided by it.
     per_length: f64,
@@ -22,23 +25,13 @@ pub(super) struct Filter {
     head: usize,
 }
 
-/// Means of `N` values.
-#[derive(Clone, Debug)]
-struct Mean<const N: usize> {
-    ring: [[f64; N]; MAX_FILTER],
-    /// Sum over the ring.
-    sum: [f64; N],
-    /// Sum of what was written since the last wrap; becomes `sum` at the next, so rounding cannot add up.
-    fresh: [f64; N],
-}
-
 impl Filter {
     pub const fn new() -> Self {
+        let none = [0.0; 3 * AXES + 3];
         Self {
-            position: Mean::NONE,
-            velocity: Mean::NONE,
-            acceleration: Mean::NONE,
-            along: Mean::NONE,
+            ring: [none; MAX_FILTER],
+            sum: none,
+            fresh: none,
             length: 1,
             per_length: 1.0,
             head: 0,
@@ -50,74 +43,55 @@ impl Filter {
         self.length = length.clamp(1, MAX_FILTER);
         self.per_length = 1.0 / self.length as f64;
         self.head = 0;
-        self.position.settle(self.length, &axes.position);
-        self.velocity.settle(self.length, &axes.velocity);
-        self.acceleration.settle(self.length, &axes.acceleration);
-        self.along.settle(self.length, &[along.s, along.v, along.a]);
+        let values = values(axes, along);
+        self.ring[..self.length].fill(values);
+        self.sum = values.map(|value| value * self.length as f64);
+        self.fresh = values.map(|_| 0.0);
     }
 
     /// Takes the newest values.
     pub fn push(&mut self, axes: &AxisMotion, along: &SpeedState) {
-        let oldest = self.head;
-        self.position.push(&axes.position, oldest);
-        self.velocity.push(&axes.velocity, oldest);
-        self.acceleration.push(&axes.acceleration, oldest);
-        self.along.push(&[along.s, along.v, along.a], oldest);
+        let values = values(axes, along);
+        let oldest = &mut self.ring[self.head];
+        for (i, value) in values.into_iter().enumerate() {
+            self.sum[i] += value - oldest[i];
+            self.fresh[i] += value;
+        }
+        *oldest = values;
         self.head += 1;
         if self.head >= self.length {
             self.head = 0;
-            self.position.wrap();
-            self.velocity.wrap();
-            self.acceleration.wrap();
-            self.along.wrap();
+            self.sum = self.fresh;
+            self.fresh = [0.0; 3 * AXES + 3];
         }
     }
 
     /// Mean of the axes.
     pub fn axes(&self) -> AxisMotion {
         AxisMotion {
-            position: self.position.mean(self.per_length),
-            velocity: self.velocity.mean(self.per_length),
-            acceleration: self.acceleration.mean(self.per_length),
+            position: self.mean(0),
+            velocity: self.mean(AXES),
+            acceleration: self.mean(2 * AXES),
         }
     }
 
     /// Mean along the path.
     pub fn along(&self) -> SpeedState {
-        let [s, v, a] = self.along.mean(self.per_length);
+        let [s, v, a] = self.mean(3 * AXES);
         SpeedState { s, v, a }
+    }
+
+    /// Mean of `N` values, from the one at `first` on.
+    fn mean<const N: usize>(&self, first: usize) -> [f64; N] {
+        core::array::from_fn(|i| self.sum[first + i] * self.per_length)
     }
 }
 
-impl<const N: usize> Mean<N> {
-    const NONE: Self = Self {
-        ring: [[0.0; N]; MAX_FILTER],
-        sum: [0.0; N],
-        fresh: [0.0; N],
-    };
-
-    fn settle(&mut self, length: usize, values: &[f64; N]) {
-        self.ring[..length].fill(*values);
-        self.sum = values.map(|value| value * length as f64);
-        self.fresh = [0.0; N];
-    }
-
-    /// Puts `values` in the place of the oldest.
-    #[inline]
-    fn push(&mut self, values: &[f64; N], oldest: usize) {
-        let oldest = &mut self.ring[oldest];
-        self.sum = core::array::from_fn(|i| self.sum[i] + (values[i] - oldest[i]));
-        self.fresh = core::array::from_fn(|i| self.fresh[i] + values[i]);
-        *oldest = *values;
-    }
-
-    /// Before the first place of the ring is written again.
-    fn wrap(&mut self) {
-        self.sum = self.fresh;
-        self.fresh = [0.0; N];
-    }
-
-    fn mean(&self, per_length: f64) -> [f64; N] {
-        self.sum.map(|sum| sum * per_length)
-    }
+fn values(axes: &AxisMotion, along: &SpeedState) -> Values {
+    let mut values = [0.0; 3 * AXES + 3];
+    values[..AXES].copy_from_slice(&axes.position);
+    values[AXES..2 * AXES].copy_from_slice(&axes.velocity);
+    values[2 * AXES..3 * AXES].copy_from_slice(&axes.acceleration);
+    values[3 * AXES..].copy_from_slice(&[along.s, along.v, along.a]);
+    values
 }

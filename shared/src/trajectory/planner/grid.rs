@@ -1,6 +1,6 @@
 //! Where nodes stand: dense where limits change, far apart where they do not.
 
-use super::breaks::{Break, Search};
+use super::breaks::{Break, MERGE, Search};
 use super::channels::SAME;
 use super::horizon::VISIT;
 use super::limits::{Bounds, ROWS};
@@ -22,8 +22,6 @@ const GROWTH: f64 = 0.4;
 const SHRINK: f64 = 0.286;
 /// The last interval before a change is no longer than this many times the way since the one before.
 const MOST_OF_GONE: f64 = 1.5;
-/// Nodes are no nearer than this where only what nothing feels is between them \[s\].
-const MERGE: f64 = 0.0005;
 /// Longest time between nodes at the programmed feed \[s\]: where the machine can stop.
 const LONGEST: f64 = 0.03;
 /// How far the limits inside an interval may be off a straight line, as a share of the acceleration.

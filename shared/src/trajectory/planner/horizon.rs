@@ -9,7 +9,7 @@ use super::braking::Cut;
 use super::limits::Bounds;
 use super::node::{Lanes, Nodes, REST, pause};
 use super::plan::Place;
-use super::split::{PutIn, STEPS, moved, split};
+use super::split::{PutIn, SPARE, STEPS, moved, split};
 use crate::ticks::PATH_PERIOD_S;
 
 /// Work of planning in one turn. Work is counted in looks at an interval, that is at its rows at both ends; the last step
@@ -19,9 +19,8 @@ pub(super) const WORK: u32 = 190;
 pub(super) const VISIT: u32 = 6;
 /// Rounds in which boxes may also grow.
 const RELAXED: u32 = 2;
-/// Most nodes that a plan goes beyond the one in force, and the fewest if it has them.
+/// Most nodes that a plan goes beyond the one in force; half of them are the fewest, if it has them.
 pub(super) const WINDOW: u32 = 64;
-pub(super) const LEAST_WINDOW: u32 = 32;
 /// Time before the slowing at the end of the plan in force that may be planned again, in lengths of the
 /// output filter,
 const SLACK: f64 = 14.0;
@@ -36,9 +35,8 @@ const TIGHT: f64 = 1.2;
 const WORK_OF_NODE: f64 = 105.0;
 /// Work that a plan to stop is expected to need.
 const WORK_OF_STOP: f64 = 800.0;
-/// How fast what is expected goes to what was needed, if that was more or less.
+/// How fast what is expected goes to what was needed, if that was more; a quarter as fast, if less.
 const RISE: f64 = 0.5;
-const FALL: f64 = 0.125;
 /// Largest factor of the time that a plan is given.
 const MOST_PATIENCE: u32 = 8;
 
@@ -83,7 +81,7 @@ pub(super) struct Horizon {
     /// Last node, at rest.
     pub(super) last: u32,
     /// Last node of the plan in force.
-    in_force: u32,
+    pub(super) in_force: u32,
     /// First node that the first round looks at.
     pub(super) start: u32,
     /// First node at which the next pass forward may find something else than the one before.
@@ -202,11 +200,6 @@ impl Horizon {
         self.phase == Phase::Waiting
     }
 
-    /// Last node of the plan in force.
-    pub fn in_force(&self) -> u32 {
-        self.in_force
-    }
-
     /// A plan is being made.
     pub fn plans(&self) -> bool {
         !matches!(self.phase, Phase::Waiting | Phase::Whole)
@@ -293,19 +286,19 @@ impl Horizon {
             last = nodes.rest(
                 last.min(
                     self.in_force
-                        .saturating_add(LEAST_WINDOW.max(beyond) / self.patience),
+                        .saturating_add((WINDOW / 2).max(beyond) / self.patience),
                 ),
             );
         }
         // A lower override reaches some way beyond where it is obeyed.
-        let most = if slower { 2 * LEAST_WINDOW } else { u32::MAX };
+        let most = if slower { WINDOW } else { u32::MAX };
         let share = if goes_on { 1 } else { self.patience };
         let work = match wanted.stop {
             true => f64::from(self.patience) * WORK_OF_STOP,
             false => f64::from((last - slowing).min(most) / share) * work_of_node,
         };
         // It should be ready before the slowing begins.
-        let tight = TIGHT * time_of(work) + 2.0 * PATH_PERIOD_S;
+        let tight = TIGHT * time_of(work) + SPARE * PATH_PERIOD_S;
         let lead = until.clamp(tight, libm::fmax(tight, MARGIN * time_of(work)));
         if !goes_on {
             let slows = wanted.stop || wanted.factor < self.factor;
@@ -333,7 +326,7 @@ impl Horizon {
         self.history = nodes.before(commit, nodes.first, remembered);
         self.start = nodes.before(slowing.max(commit), commit, bounds.remembered);
         // What kept the plans before it from being good may lie beyond a shorter one.
-        let nearer = nodes.rest(last.min(commit + LEAST_WINDOW.max((last - commit) / share)));
+        let nearer = nodes.rest(last.min(commit + (WINDOW / 2).max((last - commit) / share)));
         let last = match (wanted.stop, goes_on || slower || nearer <= commit) {
             (true, _) => commit + 1,
             (false, true) => last,
@@ -495,7 +488,7 @@ impl Horizon {
         }
         if !self.wanted.stop {
             let more = f64::from(self.spent) / f64::from(self.last - self.start) - self.work_of_node;
-            self.work_of_node += if more > 0.0 { RISE } else { FALL } * more;
+            self.work_of_node += if more > 0.0 { RISE } else { 0.25 * RISE } * more;
         }
         self.keep_cut(nodes);
         self.in_force = self.last;

@@ -3,7 +3,7 @@
 
 use super::horizon::{Horizon, VISIT};
 use super::limits::{Bounds, ROWS};
-use super::node::{Lanes, Nodes, REST, least, most, pause};
+use super::node::{EMPTY, Lanes, Nodes, REST, include, least, most, pause};
 use super::scan::advance;
 
 /// Least ṡ² at the end of an interval, as a share of that at its start and of what is possible.
@@ -32,9 +32,7 @@ impl Horizon {
             node.time - bounds.filter,
             libm::fmin(time - bounds.filter, node.time),
         );
-        while self.away < i && nodes.at(self.away + 1).time <= from {
-            self.away += 1;
-        }
+        self.away = nodes.passed(self.away, [self.history, i], from);
         let was = self.room(nodes, [self.away, i], [from, to], bounds);
         let wanted = [0, 1].map(|side: usize| node.sides[side].accelerations(a, node.trial as f32));
         let length = time - node.time;
@@ -53,10 +51,7 @@ impl Horizon {
             }
         }
         if rests {
-            let mut first = self.away;
-            while first < i && nodes.at(first + 1).time <= time - bounds.filter {
-                first += 1;
-            }
+            let first = nodes.passed(self.away, [self.history, i], time - bounds.filter);
             let was = self.room(nodes, [first, i + 1], [time - bounds.filter, time], bounds);
             self.clamp(&REST, &was, bounds);
         }
@@ -70,9 +65,7 @@ impl Horizon {
         let end = next.time - pause(next, bounds);
         let a = ((next.trial - node.trial) / (2.0 * node.delta)) as f32;
         let (from, to) = (libm::fmax(node.time + bounds.filter, end), end + bounds.filter);
-        while self.away > i + 1 && nodes.at(self.away).time > from {
-            self.away -= 1;
-        }
+        self.away = nodes.passed(self.away, [i + 1, self.away], from);
         let will = self.room(nodes, [self.away, self.last], [from, to], bounds);
         let grow = self.round <= self.relaxed;
         let node = nodes.at_mut(i);
@@ -141,16 +134,9 @@ impl Horizon {
         bounds: &Bounds,
     ) -> [Lanes; 2] {
         let ([mut i, beyond], [from, to]) = (from_to, times);
-        let mut low = [f32::INFINITY; ROWS];
-        let mut high = [f32::NEG_INFINITY; ROWS];
-        let mut include = |lanes: &Lanes| {
-            for row in 0..ROWS {
-                low[row] = least(lanes[row], low[row]);
-                high[row] = most(lanes[row], high[row]);
-            }
-        };
+        let mut range = EMPTY;
         if from < nodes.at(i).time {
-            include(&REST);
+            include(&mut range, &REST);
         }
         while i < beyond {
             self.work += 1;
@@ -164,21 +150,24 @@ impl Horizon {
                         start.allowed[row] + part * (stop.allowed[row] - start.allowed[row])
                     })
                 };
-                include(&if from > node.time { at(from) } else { start.allowed });
-                include(&if to < end { at(to) } else { stop.allowed });
+                include(
+                    &mut range,
+                    &if from > node.time { at(from) } else { start.allowed },
+                );
+                include(&mut range, &if to < end { at(to) } else { stop.allowed });
             }
             if end < next.time && next.time > from && end < to {
-                include(&REST);
+                include(&mut range, &REST);
             }
             if next.time > to {
-                return [low, high];
+                return range;
             }
             i += 1;
         }
         if beyond == self.last {
-            include(&REST);
+            include(&mut range, &REST);
         }
-        [low, high]
+        range
     }
 }
 

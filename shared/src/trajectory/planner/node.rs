@@ -3,14 +3,13 @@
 use super::limits::{Bounds, ROWS};
 use super::split::STEPS;
 use crate::ticks::PATH_PERIOD_S;
+use core::array::from_fn;
 
-/// How much of a change of acceleration that is too large is taken away in one round, and given back of one that need not
-/// be so small.
+/// How much of a change of acceleration that is too large is taken away in one round; half as much is given back of one that
+/// need not be so small.
 const TIGHTEN: f32 = 0.8;
-const LOOSEN: f32 = 0.4;
-/// Changes within this share of their limit are left alone.
+/// Changes that are too large by no more than this share of their limit are left alone, and too small by twice as much.
 const TIGHTEN_FROM: f32 = 0.01;
-const LOOSEN_FROM: f32 = 0.02;
 /// No box is made smaller than this share of what an acceleration may change by: two inside half of that are never too far
 /// apart. With half as much, curves on machines that come to their acceleration slowly take 4 % longer, with a hundredth some
 /// take four times as long; with twice as much more plans fail.
@@ -27,6 +26,8 @@ const LEAST_RATE: f32 = 1e-6;
 pub(super) type Lanes = [f32; ROWS];
 /// No acceleration.
 pub(super) const REST: Lanes = [0.0; ROWS];
+/// The range of no lanes.
+pub(super) const EMPTY: [Lanes; 2] = [[f32::INFINITY; ROWS], [f32::NEG_INFINITY; ROWS]];
 
 /// The smaller one, for lanes: unlike `f32::min` it costs one instruction, as no number here is NaN.
 pub(super) fn least(a: f32, b: f32) -> f32 {
@@ -58,6 +59,14 @@ pub(super) fn lesser(a: f64, b: f64) -> f64 {
 /// The larger one.
 pub(super) fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
+}
+
+/// Makes a range, lowest and highest lanes, so wide that `lanes` are in it.
+pub(super) fn include([low, high]: &mut [Lanes; 2], lanes: &Lanes) {
+    for row in 0..ROWS {
+        low[row] = least(lanes[row], low[row]);
+        high[row] = most(lanes[row], high[row]);
+    }
 }
 
 /// The largest lane.
@@ -156,25 +165,15 @@ impl Side {
 
     /// Makes the box smaller where the acceleration `is` more than past and future allow; says whether it did.
     pub fn shrink(&mut self, is: &Lanes, by_past: &Lanes, by_future: &Lanes, bounds: &Bounds) -> bool {
-        let mut off = 0.0;
-        for row in 0..ROWS {
-            let (top, bottom) = (
-                least(by_past[row], by_future[row]),
-                most(by_past[row], by_future[row]),
-            );
-            let far = most(is[row] - top, bottom - is[row]);
-            off = most(off, far * bounds.per_acceleration_change[row]);
-        }
-        if off <= TIGHTEN_FROM {
+        let above: Lanes = from_fn(|row| is[row] - least(by_past[row], by_future[row]));
+        let below: Lanes = from_fn(|row| most(by_past[row], by_future[row]) - is[row]);
+        let off = |row: usize| most(above[row], below[row]) * bounds.per_acceleration_change[row];
+        if highest(from_fn(off)) <= TIGHTEN_FROM {
             return false;
         }
         for row in 0..ROWS {
             let change = bounds.acceleration_change[row];
-            let (top, bottom) = (
-                least(by_past[row], by_future[row]),
-                most(by_past[row], by_future[row]),
-            );
-            let (above, below) = (is[row] - top, bottom - is[row]);
+            let (above, below) = (above[row], below[row]);
             let (shut_above, shut_below) = (above > TIGHTEN_FROM * change, below > TIGHTEN_FROM * change);
             if !(shut_above || shut_below) {
                 continue;
@@ -207,16 +206,19 @@ impl Side {
             let (full, change) = (bounds.acceleration[row], bounds.acceleration_change[row]);
             let above = room[0][row] - is[row];
             let below = is[row] - room[1][row];
-            let (opens_above, opens_below) = (above > LOOSEN_FROM * change, below > LOOSEN_FROM * change);
+            let (opens_above, opens_below) = (
+                above > 2.0 * TIGHTEN_FROM * change,
+                below > 2.0 * TIGHTEN_FROM * change,
+            );
             if !(opens_above || opens_below) {
                 continue;
             }
             let (mut low, mut high) = self.of_row(row);
             if opens_above {
-                high = least(most(high, is[row] + LOOSEN * above), full);
+                high = least(most(high, is[row] + 0.5 * TIGHTEN * above), full);
             }
             if opens_below {
-                low = most(least(low, is[row] - LOOSEN * below), -full);
+                low = most(least(low, is[row] - 0.5 * TIGHTEN * below), -full);
             }
             changed |= self.set_row(row, (low, high));
         }
@@ -241,7 +243,7 @@ impl Side {
 
     /// Accelerations of the rows.
     pub fn accelerations(&self, a: f32, x: f32) -> Lanes {
-        core::array::from_fn(|row| self.alpha[row] * (a + self.slope[row] * x))
+        from_fn(|row| self.alpha[row] * (a + self.slope[row] * x))
     }
 }
 
@@ -263,9 +265,7 @@ impl Node {
         time: 0.0,
         sides: [Side::ZERO; 2],
     };
-}
 
-impl Node {
     /// Highest ṡ² here; 0 where the machine stops.
     pub fn cap(&self) -> f64 {
         libm::fmin(
@@ -393,6 +393,18 @@ impl<const N: usize> Nodes<N> {
             before += self.at(node).lasts;
         }
         node
+    }
+
+    /// The last node from `first` to `last` that the plan being made passes no later than `time`, or else `first`; looked
+    /// for from `near`, which is one of them.
+    pub fn passed(&self, mut near: u32, [first, last]: [u32; 2], time: f64) -> u32 {
+        while near > first && self.at(near).time > time {
+            near -= 1;
+        }
+        while near < last && self.at(near + 1).time <= time {
+            near += 1;
+        }
+        near
     }
 
     pub fn at(&self, serial: u32) -> &Node {

@@ -9,8 +9,8 @@ use super::grid::Grid;
 use super::horizon::{Horizon, PlanRequest, VISIT, WINDOW, WORK};
 use super::limits::Bounds;
 use super::node::Nodes;
-use super::plan::{Knot, Place, Plan};
-use super::player::{News, PlayerAccess, Progress};
+use super::plan::{Knot, Place};
+use super::player::{News, PlayerAccess, Progress, Wish};
 use super::sample::Ground;
 use super::split::PutIn;
 use crate::io::AXES;
@@ -77,7 +77,7 @@ impl<const NODES: usize> Planning<NODES> {
     ) {
         self.follow(player);
         let idle = self.plan(player, kinematics);
-        let last = self.horizon.in_force();
+        let last = self.horizon.in_force;
         let news = News {
             wish: self.progress.wish,
             elements: self.progress.elements,
@@ -122,13 +122,15 @@ impl<const NODES: usize> Planning<NODES> {
         // A hold or another override may split the plan in force, which is the work of a turn. From rest it is better to know
         // more of the path first: a short plan ends before the next one is ready.
         let urgent = !self.horizon.goes_on(&wanted) && !self.rests();
-        let many = self.nodes.end > self.horizon.in_force() + WINDOW;
+        let many = self.nodes.end > self.horizon.in_force + WINDOW;
         if self.horizon.waiting() && (many || urgent && self.offered.is_none()) {
             work = work.saturating_sub(self.begin(player));
         }
         loop {
             if self.horizon.is_whole() && self.offered.is_none() {
-                work = work.saturating_sub(self.offer(player));
+                let last = self.horizon.last;
+                self.offer(player, Offer::New, last);
+                work = work.saturating_sub(last - self.progress.place.node);
             }
             let cost = if self.horizon.plans() {
                 let done = self.horizon.run(&mut self.nodes, &self.bounds, work);
@@ -136,7 +138,7 @@ impl<const NODES: usize> Planning<NODES> {
                     return false;
                 }
                 done
-            } else if !self.laid && self.decide(player) {
+            } else if !self.laid && player.with(|player| player.track.decide(&self.bounds)) {
                 VISIT
             } else if let extended @ 1.. = self.extend(player, kinematics) {
                 extended
@@ -152,11 +154,6 @@ impl<const NODES: usize> Planning<NODES> {
                 return false;
             }
         }
-    }
-
-    /// Moves or shapes a corner, if there is one whose neighbours are known.
-    fn decide<const ELEMENTS: usize>(&self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> bool {
-        player.with(|player| player.track.decide(&self.bounds))
     }
 
     /// Appends a node, if there is room and the path is settled far enough; says how much work that was.
@@ -178,7 +175,7 @@ impl<const NODES: usize> Planning<NODES> {
             kinematics,
             bounds: &self.bounds,
         };
-        let in_force = self.horizon.in_force();
+        let in_force = self.horizon.in_force;
         match self.grid.extend(&mut ground, &mut self.nodes, in_force) {
             Ok(work) => {
                 self.laid = work == 0;
@@ -212,30 +209,19 @@ impl<const NODES: usize> Planning<NODES> {
 
     /// At rest at the end of the plan in force, without a hold or stop.
     fn rests(&self) -> bool {
-        let ended = self.progress.place.node >= self.horizon.in_force();
+        let ended = self.progress.place.node >= self.horizon.in_force;
         self.progress.rested && ended && !self.progress.wish.stands()
     }
 
     /// Begins a plan, or turns where the machine has come to rest and is to go the other way; says how much work
     /// it was: none if it did not.
-    #[inline]
     fn begin<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> u32 {
         let wanted = self.wanted();
         if self.horizon.early(&wanted) {
             return 0;
         }
-        self.begin_for(player, wanted)
-    }
-
-    /// A call of its own: in most turns it is too early for it.
-    #[inline(never)]
-    fn begin_for<const ELEMENTS: usize>(
-        &mut self,
-        player: &mut impl PlayerAccess<ELEMENTS, NODES>,
-        wanted: PlanRequest,
-    ) -> u32 {
         let along = self.along();
-        let last = self.horizon.in_force();
+        let last = self.horizon.in_force;
         let inside = last + 1 < self.nodes.end && self.nodes.at(last).limit > 0.0;
         if self.rests() && (inside || !along) {
             // From rest the nodes stand closer, and none of the old ones may be the next.
@@ -257,8 +243,8 @@ impl<const NODES: usize> Planning<NODES> {
             &self.bounds,
         );
         let more = node - self.progress.place.node;
-        if more > 0 || self.horizon.in_force() < last {
-            self.change(player, last);
+        if more > 0 || self.horizon.in_force < last {
+            self.offer(player, Offer::Changed, last);
         }
         match (begun, more > 0) {
             (_, true) => 2 * BEGIN + 2 * VISIT * more + last - self.progress.place.node,
@@ -267,47 +253,32 @@ impl<const NODES: usize> Planning<NODES> {
         }
     }
 
-    /// Offers the plan in force again, which may have more nodes now, or rest before its `last`.
-    fn change<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>, last: u32) {
-        let rest = Some(self.horizon.in_force()).filter(|rest| *rest < last);
-        for i in self.progress.place.node..=last {
-            let node = self.nodes.at(i);
-            let knot = Knot::of(node, (node.x, node.lasts));
-            player.with(|player| player.next_plan().set(i, knot));
-        }
-        let put_in = self.horizon.put_in;
-        self.hand_over(player, Offer::Changed, |plan| {
-            (plan.last, plan.rest, plan.commit, plan.put_in) = (last, rest, None, put_in);
-        });
-    }
-
-    /// Offers the plan that is whole; says how much work it was.
-    fn offer<const ELEMENTS: usize>(&mut self, player: &mut impl PlayerAccess<ELEMENTS, NODES>) -> u32 {
-        let last = self.horizon.last;
-        for i in self.progress.place.node..=last {
-            let planned = self.horizon.whole(&self.nodes, i, &self.bounds);
-            let knot = Knot::of(self.nodes.at(i), planned);
-            player.with(|player| player.next_plan().set(i, knot));
-        }
-        let commit = Some(self.horizon.commit);
-        self.hand_over(player, Offer::New, |plan| {
-            (plan.last, plan.rest, plan.commit) = (last, None, commit);
-            plan.put_in = PutIn::default();
-        });
-        last - self.progress.place.node
-    }
-
-    /// Offers the plan of which the nodes are there, completed by `complete`.
-    fn hand_over<const ELEMENTS: usize>(
+    /// Offers a plan with the nodes up to `last`: the one that is whole, or the one in force again.
+    fn offer<const ELEMENTS: usize>(
         &mut self,
         player: &mut impl PlayerAccess<ELEMENTS, NODES>,
         offer: Offer,
-        complete: impl FnOnce(&mut Plan<NODES>),
+        last: u32,
     ) {
+        for i in self.progress.place.node..=last {
+            let node = self.nodes.at(i);
+            let planned = match offer {
+                Offer::New => self.horizon.whole(&self.nodes, i, &self.bounds),
+                Offer::Changed => (node.x, node.lasts),
+            };
+            let knot = Knot::of(node, planned);
+            player.with(|player| player.next_plan().set(i, knot));
+        }
+        let rest = self.horizon.in_force;
+        let (rest, commit, put_in) = match offer {
+            Offer::New => (None, Some(self.horizon.commit), PutIn::default()),
+            Offer::Changed => (Some(rest).filter(|rest| *rest < last), None, self.horizon.put_in),
+        };
         self.offers = self.offers.wrapping_add(1);
         self.offered = Some(offer);
         player.with(|player| {
-            complete(player.next_plan());
+            let plan = player.next_plan();
+            (plan.last, plan.rest, plan.commit, plan.put_in) = (last, rest, commit, put_in);
             player.offer(self.progress.path, self.offers);
         });
     }
@@ -343,10 +314,7 @@ impl Progress {
     const NONE: Self = Self {
         path: 0,
         space: PathSpace::Tool,
-        wish: super::player::Wish {
-            way: Way::Forward,
-            factor: 1.0,
-        },
+        wish: Wish::NONE,
         taken: 0,
         last: 0,
         place: Place::at(0),

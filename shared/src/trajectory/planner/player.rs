@@ -78,6 +78,12 @@ pub(super) struct Wish {
 }
 
 impl Wish {
+    /// Nothing but what is programmed.
+    pub const NONE: Self = Self {
+        way: Way::Forward,
+        factor: 1.0,
+    };
+
     /// To come to rest, and stay.
     pub fn stands(&self) -> bool {
         self.way == Way::Hold || self.factor <= 0.0
@@ -122,10 +128,7 @@ pub(super) struct News {
 
 impl News {
     const NONE: Self = Self {
-        wish: Wish {
-            way: Way::Forward,
-            factor: 1.0,
-        },
+        wish: Wish::NONE,
         elements: 0,
         waiting: false,
         done: false,
@@ -141,7 +144,7 @@ impl<const ELEMENTS: usize, const NODES: usize> Player<ELEMENTS, NODES> {
             bounds: Bounds::NONE,
             space: PathSpace::Tool,
             path: 0,
-            wish: News::NONE.wish,
+            wish: Wish::NONE,
             keep: 0.0,
             plans: [const { Plan::NONE }; 2],
             active: 0,

@@ -138,10 +138,7 @@ impl Horizon {
             self.until = self.last;
         }
         let time = nodes.at(self.from).time - bounds.filter;
-        self.away = self.from;
-        while self.away > self.history && nodes.at(self.away).time > time {
-            self.away -= 1;
-        }
+        self.away = nodes.passed(self.from, [self.history, self.from], time);
         self.moved = if self.until == self.last {
             [self.from, self.last]
         } else {

@@ -26,15 +26,8 @@ impl<'a> Lines<'a> {
 
     /// Highest a at `x`.
     fn highest(&self, x: f32) -> f32 {
-        let [start, end] = self.sides;
-        let mut lanes = [0.0; ROWS];
-        for row in 0..ROWS {
-            lanes[row] = least(
-                start.high[row] - start.slope[row] * x,
-                end.high[row] - end.slope[row] * x,
-            );
-        }
-        lanes.into_iter().fold((self.next - x) * self.per_length, least)
+        let most = (self.next - x) * self.per_length;
+        self.rows(|side| &side.high, least, x, most)
     }
 
     /// Lowest a at `x`.
@@ -44,15 +37,17 @@ impl<'a> Lines<'a> {
 
     /// The same, though it would lead to rest inside the interval.
     fn lowest_of_rows(&self, x: f32) -> f32 {
+        self.rows(|side| &side.low, most, x, f32::NEG_INFINITY)
+    }
+
+    /// The `nearer` one of `bound` and of the lines of all rows at `x`.
+    fn rows(&self, of: fn(&Side) -> &Lanes, nearer: impl Fn(f32, f32) -> f32, x: f32, bound: f32) -> f32 {
         let [start, end] = self.sides;
-        let mut lanes = [0.0; ROWS];
-        for row in 0..ROWS {
-            lanes[row] = most(
-                start.low[row] - start.slope[row] * x,
-                end.low[row] - end.slope[row] * x,
-            );
-        }
-        lanes.into_iter().fold(f32::NEG_INFINITY, most)
+        let [first, last] = [of(start), of(end)];
+        let lanes: Lanes = core::array::from_fn(|row| {
+            nearer(first[row] - start.slope[row] * x, last[row] - end.slope[row] * x)
+        });
+        lanes.into_iter().fold(bound, nearer)
     }
 
     /// The line of the highest a that is `a` at `x`, as (value at 0, slope): that of a row, or else of the next speed.

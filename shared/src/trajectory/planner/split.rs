@@ -7,8 +7,8 @@ use crate::ticks::PATH_PERIOD_S;
 /// An interval is split if it would make a change of the plan later than this \[s\], and than twice the time that a plan
 /// needs: more nodes are more work.
 const LATE: f64 = 0.05;
-/// Ticks after the time at which the plan has to be ready.
-const SPARE: f64 = 2.0;
+/// Ticks after the time at which a plan has to be ready.
+pub(super) const SPARE: f64 = 2.0;
 /// Nodes for the way in which the machine can stop, and that way is this many times the shortest.
 pub(super) const STEPS: usize = 12;
 const LONGER: f64 = 1.3;

@@ -14,9 +14,8 @@ pub const LONGEST: f64 = 1e9;
 /// No channel changes by more than this for each mm of path length: a turn of some degrees about a tip that stands may be
 /// a short path.
 const STEEPEST: f64 = 1e6;
-/// Highest and lowest feed \[mm/s\]: beyond them the squares cannot be resolved in single precision.
+/// Highest feed \[mm/s\], and one divided by the lowest: beyond them the squares cannot be resolved in single precision.
 const FASTEST: f64 = 1e6;
-const SLOWEST: f64 = 1e-6;
 /// Elements that are kept behind the one that the machine is on.
 pub(super) const REACH: u32 = 8;
 
@@ -317,7 +316,7 @@ fn is_sound(element: &Element, ends: [&PathPoint; 2]) -> bool {
     };
     length > SAME
         && length <= LONGEST
-        && (SLOWEST..=FASTEST).contains(&element.feed)
+        && (1.0 / FASTEST..=FASTEST).contains(&element.feed)
         && spans
         && element.rest.iter().all(calm)
         && ends.into_iter().all(place)
