@@ -2,10 +2,10 @@
 
 use crate::arc::{self, Arc};
 use crate::list::{Item, Kind, List, Motion, Place, straight, turned, turns_only};
-use crate::peer::TOOLS;
+use crate::peer::{self, TOOLS};
 use nc::{
     ArcForm, ArcWay, FeedRate, Move, NcError, Options, Program, ProgramAction, ProgramEvent, Setup, Target,
-    TipAndAxes, Until, Way,
+    TipAndAxes, Tool, Until, Way,
 };
 use serde::{Deserialize, Serialize};
 use shared::geometry::Turn;
@@ -59,7 +59,7 @@ pub fn read(file: &Path) -> Outcome {
 fn options(file: &Path) -> Options {
     let setup = Setup {
         folders: file.parent().map(Path::to_owned).into_iter().collect(),
-        tools: (1..=TOOLS).map(|number| (number, 0.0)).collect(),
+        tools: (1..=TOOLS).map(|number| (number, tool(number))).collect(),
         kinematics: Some(sync::Arc::new(Plain)),
         ..Setup::default()
     };
@@ -67,6 +67,13 @@ fn options(file: &Path) -> Options {
         optional_stop: true,
         setup: sync::Arc::new(setup),
         ..Options::default()
+    }
+}
+
+fn tool(number: u32) -> Tool {
+    Tool {
+        length_mm: 0.0,
+        diameter_mm: peer::diameter_mm(number),
     }
 }
 

@@ -21,7 +21,7 @@ use std::time::Duration;
 const PROGRAM: &str = "/usr/bin/rs274";
 /// What is printed, and what instead.
 const FORMATS: [&[u8; 4]; 2] = [b"%.4f", b"%.9f"];
-/// Tools are numbered up to here, without length and 1 mm thick.
+/// Tools are numbered up to here, without length.
 pub const TOOLS: u32 = 99;
 /// Longest time of a program.
 const LIMIT: Duration = Duration::from_secs(10);
@@ -91,10 +91,19 @@ impl Peer {
     }
 }
 
+/// The diameter of a tool; none of tool 1, which `rs274` has in the machine at the beginning, where that of LinuxCNC has none.
+pub fn diameter_mm(number: u32) -> f64 {
+    f64::from((number - 1) % 10) * 0.75
+}
+
 /// The tools, in the format of LinuxCNC.
 fn tool_table() -> String {
     (1..=TOOLS)
-        .map(|number| format!("T{number} P{number} Z0 D1\n"))
+        .map(|number| {
+            // The machine of the peer's program has inches.
+            let diameter = diameter_mm(number) / 25.4;
+            format!("T{number} P{number} Z0 D{diameter:.12}\n")
+        })
         .collect()
 }
 

@@ -515,7 +515,7 @@ impl Block {
     /// Puts a code into it, which must not exclude another one.
     pub(super) fn add(&mut self, code: CodeWord) -> Result<(), NcError> {
         let both = code.group == Group::Coolant && code.code != Code::CoolantOff;
-        if code.group == Group::Hint {
+        if matches!(code.group, Group::Hint | Group::Corners) {
             self.codes.push(code);
             return Ok(());
         }

@@ -81,7 +81,11 @@ impl<'b> Claims<'b> {
 fn is_edge(block: &Block, word: &Word) -> bool {
     let of_tool = block.word("T").is_some() || block.has(Code::ChangeTool);
     let count = if of_tool { 100 } else { 10 };
-    block.code(Group::ToolLength).is_none() && word.number_below(count).is_some()
+    let of_code = block.code(Group::ToolLength).is_some()
+        || block
+            .code(Group::Compensation)
+            .is_some_and(|code| code.code != Code::CompensationOff);
+    !of_code && word.number_below(count).is_some()
 }
 
 /// Whether a word cannot belong to anything but a motion.
@@ -134,6 +138,7 @@ fn may_have(code: Code) -> &'static [&'static str] {
         Code::TurnAbout => &["R"],
         Code::Call => &["L"],
         Code::ToolLength | Code::MoreLength => &["H", "D"],
+        Code::Left | Code::LeftBy | Code::Right | Code::RightBy => &["D"],
         Code::TipOn | Code::TipByVectors => &["H"],
         // K is what other controllers have for L.
         code if code.is_cycle() => &["R", "Q", "P", "L", "K"],

@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 129] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 135] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -32,6 +32,10 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 129] = [
     ('G', 300, Code::SecondHome, "G30", Group::NonModal),
     ('G', 301, Code::SetSecondHome, "G30.1", Group::NonModal),
     ('G', 400, Code::CompensationOff, "G40", Group::Compensation),
+    ('G', 410, Code::Left, "G41", Group::Compensation),
+    ('G', 411, Code::LeftBy, "G41.1", Group::Compensation),
+    ('G', 420, Code::Right, "G42", Group::Compensation),
+    ('G', 421, Code::RightBy, "G42.1", Group::Compensation),
     ('G', 430, Code::ToolLength, "G43", Group::ToolLength),
     ('G', 431, Code::OwnLength, "G43.1", Group::ToolLength),
     ('G', 432, Code::MoreLength, "G43.2", Group::ToolLength),
@@ -98,6 +102,8 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 129] = [
     ('G', 1530, Code::MachineAxes, "G153", Group::NonModal),
     ('G', 1870, Code::Hint, "G187", Group::Hint),
     ('G', 2550, Code::Hint, "G255", Group::Hint),
+    ('G', 4500, Code::RoundCorners, "G450", Group::Corners),
+    ('G', 4510, Code::SharpCorners, "G451", Group::Corners),
     ('G', 5000, Code::NoSystem, "G500", Group::Offset),
     ('G', 5050, Code::System(5), "G505", Group::Offset),
     ('G', 5060, Code::System(6), "G506", Group::Offset),
@@ -135,7 +141,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 129] = [
 ];
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 40] = [
+const REFUSED: [(char, u32, &str); 36] = [
     ('G', 70, LATHE),
     ('G', 120, POCKET),
     ('G', 130, POCKET),
@@ -147,10 +153,6 @@ const REFUSED: [(char, u32, &str); 40] = [
     ('G', 383, PROBING),
     ('G', 384, PROBING),
     ('G', 385, PROBING),
-    ('G', 410, COMPENSATION),
-    ('G', 411, COMPENSATION),
-    ('G', 420, COMPENSATION),
-    ('G', 421, COMPENSATION),
     (
         'G',
         440,
@@ -219,8 +221,6 @@ const THREADING: &str =
     "threading and tapping need a spindle that the axes follow, and this machine has none";
 const PROBING: &str =
     "the boards have no probe input for programs: teach the part instead (seamwright teach)";
-const COMPENSATION: &str =
-    "cutter compensation is not supported: let the CAM system put out the path of the tool's centre";
 const OVERRIDES: &str = "programs do not lock the operator's feed override: leave it out, or list it under passed_over in [program] of the machine file";
 
 /// G501 to G599: coordinate systems of Siemens, of which there are fewer here.
@@ -314,6 +314,22 @@ pub enum Code {
     SetSecondHome,
     /// G40.
     CompensationOff,
+    /// G41: the tool is to the left of the contour.
+    Left,
+    /// G41.1: the same, with a diameter that the block says.
+    LeftBy,
+    /// G42.
+    Right,
+    /// G42.1.
+    RightBy,
+    /// G450: outside corners of a contour are gone around by arcs.
+    RoundCorners,
+    /// G451: they are gone to where the lines meet.
+    SharpCorners,
+    /// NORM: the tool goes straight to a contour.
+    StraightEntry,
+    /// KONT: around it, if need be.
+    EntryAround,
     /// G43.
     ToolLength,
     /// G43.1: a length that the block says.
@@ -485,8 +501,10 @@ pub enum Group {
     Plane,
     /// G20 G21 G70 G71 G700 G710.
     Units,
-    /// G40.
+    /// G40 G41 G42 G41.1 G42.1.
     Compensation,
+    /// G450 G451, KONT NORM: several may stand together.
+    Corners,
     /// G43 G43.1 G43.2 G43.4 G43.5 G49.
     ToolLength,
     /// G54 to G59.3, G500, G505 to G509.

@@ -73,6 +73,7 @@ impl Interpreter {
         mode: Code,
         place: SourcePosition,
     ) -> Result<bool, NcError> {
+        self.check_come_back(mode.name(), place)?;
         let axis = self.modal.plane.axis();
         if let Some(word) = EXTENSION_WORDS.iter().find_map(|name| block.word(name)) {
             return Err(Problem::Orphan(word.label()).at(word.place));
@@ -108,9 +109,13 @@ impl Interpreter {
             }
             .at(place)
         };
-        let retract = self.sticky.levels[0].ok_or_else(|| missing("R"))?;
+        let retract = match self.sticky.levels[0] {
+            None if self.setup.r_at_initial_level => None,
+            retract => Some(retract.ok_or_else(|| missing("R"))?),
+        };
         let bottom = self.sticky.levels[1].ok_or_else(|| missing(AXIS_WORDS[axis]))?;
-        if self.sticky.steps != [self.modal.incremental; 2] {
+        let steps = self.sticky.steps.map(|steps| steps != self.modal.incremental);
+        if (steps[0] && retract.is_some()) || steps[1] {
             let now = if self.modal.incremental {
                 "steps"
             } else {
@@ -139,6 +144,13 @@ impl Interpreter {
         let now = self.programmed(&[0, 1, 2], place)?;
         let (mut over, step) = self.first_place(block, axis, &now);
         let initial = self.initial_level(axis);
+        if retract.is_none() {
+            let text =
+                "without R a cycle begins at the level where the first one began, as the machine file says";
+            self.tell_once(text.to_owned(), place);
+        }
+        let own = if self.modal.incremental { 0.0 } else { initial };
+        let retract = retract.unwrap_or(own);
         let (retract, bottom) = match self.modal.incremental {
             true => (retract + initial, retract + initial + bottom),
             false => (retract, bottom),

@@ -40,6 +40,24 @@ pub enum Problem {
     /// No character of the dialect.
     #[error("'{0}' is not understood here: write text that is no program in ( ) or behind ;")]
     Character(char),
+    /// A tool does not go along a contour.
+    #[error("{code} with a radius of {radius} mm: {why}")]
+    Gouge {
+        /// G41 or G42.
+        code: &'static str,
+        /// Radius of the tool \[mm\].
+        radius: f64,
+        /// Why, and what to do.
+        why: &'static str,
+    },
+    /// What cutter compensation does not go together with.
+    #[error("{code} is not possible while cutter compensation is on, since line {line}: write G40 before")]
+    WhileCompensated {
+        /// The code.
+        code: &'static str,
+        /// That of G41 or G42.
+        line: u32,
+    },
     /// S of a beam.
     #[error(
         "S{s} is more than S{full}, the full power of the beam by laser in [program] of the machine file"

@@ -44,10 +44,10 @@ impl Interpreter {
         }
         if let Some(edge) = block
             .word("D")
-            .filter(|_| block.code(Group::ToolLength).is_none())
+            .filter(|_| block.code(Group::ToolLength).is_none() && block.code(Group::Compensation).is_none())
         {
             let text =
-                "D changes nothing: a tool has one length, that of G43 H, and no radius is compensated";
+                "D changes nothing here: a tool has one length, that of G43 H, and the radius of G41 and G42";
             self.tell_once(text.to_owned(), edge.place);
         }
         let of_lathes = ["I", "J", "Q"].iter().find_map(|name| block.word(name));

@@ -3,6 +3,7 @@
 use super::block::{Block, CodeWord};
 use super::claims::Claims;
 use super::codes::{Code, Group};
+use super::compensation::Compensation;
 use super::cycles::Sticky;
 use super::direction::DIRECTION_WORDS;
 use super::error::{NcError, Problem, SourcePosition};
@@ -22,6 +23,7 @@ use super::siemens::corners::Corners;
 use super::siemens::drilling::Drilling;
 use super::tool_length::{Tools, tool};
 use super::waits::Wait;
+use shared::geometry::Turn;
 use shared::io::{AXES, SIDES};
 use std::sync::Arc;
 
@@ -64,6 +66,7 @@ pub(super) struct Interpreter {
     /// The pole of AP= and RP= in coordinates of the program \[mm\].
     pub(super) pole: [f64; 3],
     pub(super) corners: Corners,
+    pub(super) compensation: Compensation,
     pub(super) pending: Vec<Pending>,
     pub(super) burning: Burning,
     /// Waits before the next path, and before its dwell.
@@ -121,6 +124,7 @@ impl Interpreter {
             modal_drilling: None,
             pole: [0.0; 3],
             corners: Corners::default(),
+            compensation: Compensation::default(),
             pending: Vec::new(),
             burning: Burning::default(),
             waits: Vec::new(),
@@ -203,6 +207,7 @@ impl Interpreter {
         self.unit_hint(block);
         self.save_modes(block)?;
         self.switch(block, &claims)?;
+        self.compensate(block, &claims)?;
         self.system_and_tool(block, &claims)?;
         if let (Some(code), Some(motion)) = (takes, block.code(Group::Motion))
             // The way to the park position is one of rapids anyway.
@@ -248,6 +253,14 @@ impl Interpreter {
             self.wait(pending);
         }
         if let Some((name, place)) = &block.weld {
+            let left = self.setup.laser.is_none() && self.spindle.turns() == Some(Turn::CounterClockwise);
+            if name.is_some() && left {
+                let (code, why) = (
+                    "WELDON",
+                    "the spindle turns by M4, and welds are stirred clockwise: write M5 or M3 before",
+                );
+                return Err(Problem::Impossible { code, why }.at(*place));
+            }
             self.weld(name.as_deref(), *place);
             self.check_weld_as_it_is("WELDON", *place)?;
         }

@@ -14,6 +14,7 @@ mod block;
 mod branches;
 mod claims;
 mod codes;
+mod compensation;
 mod cycles;
 mod direction;
 mod effort;
@@ -37,6 +38,7 @@ mod nurbs;
 mod offsets;
 mod outputs;
 mod parameters;
+mod pieces;
 mod polar;
 mod program;
 mod reader;
@@ -63,5 +65,5 @@ pub use program::{
     Program, ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,
 };
 pub use reading::{KEPT, RemainingBlocks, interpret, interpret_file};
-pub use setup::{Options, Setup, TipAndAxes};
+pub use setup::{Options, Setup, TipAndAxes, Tool};
 pub use waits::{InputEvent, Until, Wait};

@@ -120,6 +120,7 @@ impl Interpreter {
             Place::Rotation(system) => self.offsets.systems[system].rotation,
             Place::Tool => f64::from(self.tool_numbers[1]),
             Place::ToolLength => self.tools.length_of(self.tool_numbers[1]),
+            Place::Here(axis) if self.is_beside(axis) => return None,
             Place::Here(axis) => {
                 let place = SourcePosition {
                     line: self.line,

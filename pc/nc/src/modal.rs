@@ -30,6 +30,8 @@ struct Feed {
 pub(super) struct Modal {
     /// G0, G1, G2, G3, G5, G5.1 or a cycle; none after a NURBS, and after G80 where no cycle was on.
     pub(super) motion: Option<Code>,
+    /// A motion code was said.
+    motion_said: bool,
     /// G0 or G1 before a cycle: G80 goes back to it.
     before_cycle: Option<Code>,
     /// The last motion was a G6.2, which a G6.3 may close once more.
@@ -63,7 +65,8 @@ pub(super) struct Modal {
 impl Modal {
     pub(super) fn new(setup: &Setup) -> Self {
         Self {
-            motion: None,
+            motion: setup.rapid_at_start.then_some(Code::Rapid),
+            motion_said: false,
             before_cycle: None,
             closed: false,
             tip: setup.tip_control,
@@ -154,7 +157,7 @@ impl Modal {
                     if motion.is_cycle() && !self.motion.is_some_and(Code::is_cycle) {
                         self.before_cycle = self.motion;
                     }
-                    self.motion = Some(motion);
+                    (self.motion, self.motion_said) = (Some(motion), true);
                 }
                 // The others have their own places, or confirm the only state there is.
                 _ => {}
@@ -169,8 +172,16 @@ impl Modal {
     /// G80. Controllers whose cycles are in a group of their own go on as before the cycle.
     fn end_cycle(&mut self) {
         let straight = |code: &Code| matches!(code, Code::Rapid | Code::Feed);
+        if !self.motion_said {
+            return;
+        }
         let cycle = self.motion.filter(|code| code.is_cycle());
         self.motion = cycle.and(self.before_cycle).filter(straight);
+    }
+
+    /// Whether the motion that holds is that of the start.
+    pub(super) fn moves_as_at_start(&self) -> bool {
+        self.motion.is_some() && !self.motion_said
     }
 
     /// Whether a program that has said no F so far begins with this one \[mm/min\].

@@ -97,6 +97,7 @@ impl Interpreter {
     /// that feeds.
     pub(super) fn axes_motion(&mut self, block: &Block, place: SourcePosition) -> Result<bool, NcError> {
         no_slides_or_direction(block)?;
+        self.check_come_back("G53", place)?;
         let mut axes = Words::of(block).axes;
         if axes.iter().all(Option::is_none) {
             let text = "G53, G153 and SUPA without axis words change nothing: they hold in their block only";
@@ -206,6 +207,10 @@ impl Interpreter {
         let Some(mode) = self.modal.motion else {
             return Err(Problem::NoMotion.at(place));
         };
+        if self.modal.moves_as_at_start() {
+            let text = "axis words before any motion code are those of a G0, as the machine file says";
+            self.tell_once(text.to_owned(), place);
+        }
         if !self.modal.tip {
             return Err(Problem::NotTip.at(place));
         }
@@ -234,11 +239,13 @@ impl Interpreter {
         words.extension = Words::of(block)
             .extension
             .map(|word| word.map(|value| value * unit));
-        let from = self.known_place();
+        let from = match self.compensation.is_on() {
+            true => Some(self.position(&self.modal.plane.axes(), place)?),
+            false => self.known_place(),
+        };
         if mode == Code::Rapid {
-            if self.learn(&words) {
-                self.rapid(Way::Line, words, place)?;
-                self.has_come(from);
+            if self.learn(&words) || self.has_to_come_back() {
+                self.go(block, (Way::Line, words), from, None, place)?;
             }
             self.spline_end = None;
             return Ok(false);
@@ -260,8 +267,8 @@ impl Interpreter {
             self.spline_end = None;
         }
         // An arc without a way is a full circle.
-        if self.learn(&words) || way != Way::Line {
-            self.feed_to_corner(block, (way, words), from, feed, place)?;
+        if self.learn(&words) || way != Way::Line || self.has_to_come_back() {
+            self.go(block, (way, words), from, Some(feed), place)?;
         }
         Ok(true)
     }

@@ -279,6 +279,7 @@ impl Reader {
                     block.end_as_subprogram();
                 }
                 self.look_behind_corner(&block);
+                self.look_along_contour(&block);
                 self.interpreter.block(&block)?;
                 self.call_of(&block)?;
                 ran.settings = block.settings;

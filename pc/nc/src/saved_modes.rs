@@ -93,6 +93,7 @@ impl Interpreter {
                     self.restore(saved, place)?;
                 }
                 By::Header(frame) => {
+                    self.check_off("SAVE", saved.place)?;
                     self.modal.restore_codes(saved.modal);
                     self.offsets.active = saved.system;
                     self.offsets.frame = frame;
@@ -105,6 +106,7 @@ impl Interpreter {
 
     /// All modes but that of motion, and S. A spindle is not switched on or off by this.
     fn restore(&mut self, saved: Saved, place: SourcePosition) -> Result<(), NcError> {
+        self.check_off("M72", place)?;
         if saved.spindle.turns() != self.spindle.turns() {
             let (code, why) = (
                 "M72",

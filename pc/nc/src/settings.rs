@@ -172,6 +172,7 @@ impl Interpreter {
 
     /// G28 and G30: by way of the place that axis words say, if there are any, to the home of these axes or of all.
     fn home(&mut self, block: &Block, index: usize, place: SourcePosition) -> Result<(), NcError> {
+        self.check_come_back("G28 and G30", place)?;
         let said = self.said(block)?;
         if self.offsets.turned() && said[0].is_some() != said[1].is_some() {
             let code = if index == 0 { "G28" } else { "G30" };

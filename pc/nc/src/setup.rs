@@ -42,8 +42,8 @@ pub struct Setup {
     pub homes: [[f64; AXES]; 2],
     /// Where G54 to G59.3 are as the program begins.
     pub systems: [CoordinateSystem; SYSTEMS],
-    /// Lengths of tools by number, beyond the tip of the machine along its tool \[mm\]; without any, all end there.
-    pub tools: BTreeMap<u32, f64>,
+    /// Tools by number; without any, all are as the tip of the machine.
+    pub tools: BTreeMap<u32, Tool>,
     /// Numbers of M codes that mean nothing here and are passed over, which is told. Those that mean something keep their meaning.
     pub passed_over: BTreeSet<u16>,
     /// Lines for a Grbl controller itself that move nothing are passed over, which is told.
@@ -52,6 +52,10 @@ pub struct Setup {
     pub spindle_rpm: Option<f64>,
     /// The beam that M3, M4, M5 and S switch in place of a spindle.
     pub laser: Option<Laser>,
+    /// Axis words before any motion code are those of a G0.
+    pub rapid_at_start: bool,
+    /// R of cycles that have none is the level where the first of them begins.
+    pub r_at_initial_level: bool,
     /// F of programs that have said none \[mm/min\].
     pub feed_mm_min: Option<f64>,
     /// Where subroutines in files of their own are.
@@ -77,11 +81,22 @@ impl Default for Setup {
             grbl_commands: false,
             spindle_rpm: None,
             laser: None,
+            rapid_at_start: false,
+            r_at_initial_level: false,
             feed_mm_min: None,
             folders: Vec::new(),
             kinematics: None,
         }
     }
+}
+
+/// A tool of the table.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tool {
+    /// How far its end is beyond the tip of the machine, along the tool \[mm\].
+    pub length_mm: f64,
+    /// For cutter compensation \[mm\].
+    pub diameter_mm: f64,
 }
 
 /// Kinematics of a machine as programs see them: X Y Z \[mm\] of tip or axes, A B C \[deg\] as the axes stand.

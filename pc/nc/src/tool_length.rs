@@ -10,6 +10,7 @@ use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::offsets::Coordinates;
 use super::program::{AXIS_WORDS, Way, Words};
+use super::setup::Tool;
 use shared::io::AXES;
 use std::collections::BTreeMap;
 
@@ -25,8 +26,7 @@ const FIXTURE: usize = 8;
 /// The table, and what of it holds.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tools {
-    /// Lengths beyond the tip of the machine file \[mm\].
-    table: BTreeMap<u32, f64>,
+    table: BTreeMap<u32, Tool>,
     /// The one in use \[mm\].
     pub(super) length: f64,
     /// A B C where the last motion led \[deg\].
@@ -34,7 +34,7 @@ pub(super) struct Tools {
 }
 
 impl Tools {
-    pub(super) fn new(table: &BTreeMap<u32, f64>) -> Self {
+    pub(super) fn new(table: &BTreeMap<u32, Tool>) -> Self {
         Self {
             table: table.clone(),
             ..Self::default()
@@ -43,7 +43,12 @@ impl Tools {
 
     /// That of a tool, 0 if it is not in the table \[mm\].
     pub(super) fn length_of(&self, number: u32) -> f64 {
-        self.table.get(&number).copied().unwrap_or(0.0)
+        self.table.get(&number).map_or(0.0, |tool| tool.length_mm)
+    }
+
+    /// That of a tool of the table \[mm\].
+    pub(super) fn diameter_of(&self, number: u32) -> Option<f64> {
+        self.table.get(&number).map(|tool| tool.diameter_mm)
     }
 }
 
@@ -101,7 +106,7 @@ impl Interpreter {
     fn length_of(&mut self, number: u32, place: SourcePosition) -> Result<f64, NcError> {
         match self.tools.table.get(&number) {
             _ if number == 0 => Ok(0.0),
-            Some(length) => Ok(*length),
+            Some(tool) => Ok(tool.length_mm),
             None if self.setup.tools.is_empty() => {
                 let text =
                     format!("H{number} changes nothing: the tip is that of the tool in the machine file");
@@ -158,11 +163,11 @@ impl Interpreter {
             return Err(p.value_error("tools of the table have numbers from 1"));
         }
         if let Some(r) = claims.word(Code::SetOffsets, "R") {
-            let text = "the radius of a tool changes nothing: cutter compensation is not supported";
-            self.notice(text.to_owned(), r.place);
+            let diameter = 2.0 * r.value * self.modal.unit();
+            self.tools.table.entry(number).or_default().diameter_mm = diameter;
         }
         let Some(z) = self.length_words(block)? else {
-            self.tools.table.entry(number).or_insert(0.0);
+            self.tools.table.entry(number).or_default();
             return Ok(());
         };
         let length = if l.value == 1.0 {
@@ -184,7 +189,7 @@ impl Interpreter {
             };
             at[Z] + self.tools.length - zero - z
         };
-        self.tools.table.insert(number, length);
+        self.tools.table.entry(number).or_default().length_mm = length;
         Ok(())
     }
 

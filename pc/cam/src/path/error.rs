@@ -196,8 +196,10 @@ pub enum PathError {
     /// The speed must be constant, and an axis does not allow it.
     #[error("{0}; lower F to that, for the speed must be constant with the beam on")]
     NotConstant(FeedTooHigh),
-    /// M4: spindles only have one sense.
-    #[error("{place}: the spindle of {machine} turns clockwise only: write M3")]
+    /// M4, where nothing turns the spindle the other way.
+    #[error(
+        "{place}: the spindle of {machine} turns clockwise only: write M3, or name the output that turns it the other way by spindle_reverse in [program] of the machine file"
+    )]
     SpindleSense {
         /// Where in the program.
         place: SourcePosition,

@@ -87,8 +87,8 @@ pub struct Planner {
     sides: Range<usize>,
     planning: PlanningConfig,
     program: ProgramConfig,
-    /// Lengths by number \[mm\].
-    tools: BTreeMap<u32, f64>,
+    /// By number.
+    tools: BTreeMap<u32, nc::Tool>,
     /// Where G54 to G59.3 are when a program begins.
     systems: [CoordinateSystem; nc::SYSTEMS],
 }
@@ -115,7 +115,11 @@ impl Planner {
             sides: machine.tracking.as_ref().map_or(0..0, |unit| unit.board.sides()),
             planning: machine.planning.clone(),
             program: machine.program.clone(),
-            tools: machine.tools.clone(),
+            tools: machine
+                .tools
+                .iter()
+                .map(|(number, tool)| (*number, program_setup::tool(tool)))
+                .collect(),
             systems: System::ALL.map(|system| {
                 let WorkOffset { origin, rotation_deg } = machine.work_offsets.of(system);
                 CoordinateSystem {

@@ -18,27 +18,27 @@ pub(super) struct Switching {
 impl Planner {
     /// `events` as the motion board knows them. Beams, spindle and tracking must be there, and give only so much.
     pub(super) fn switchings(&self, events: &[ProgramEvent]) -> Result<Vec<Switching>, PathError> {
-        let switching = |event: &ProgramEvent| {
-            let action = self.action(event).transpose()?;
-            Some(action.map(|action| Switching {
+        let mut switchings = Vec::new();
+        for event in events {
+            switchings.extend(self.actions(event)?.into_iter().map(|action| Switching {
                 with_target: event.with_target,
                 after_mm: event.after_mm,
                 action,
-            }))
-        };
-        events.iter().filter_map(switching).collect()
+            }));
+        }
+        Ok(switchings)
     }
 
-    /// What an event switches; of coolant and the first tool [`Planner::notices`] tells.
-    pub(super) fn action(&self, event: &ProgramEvent) -> Result<Option<PathAction>, PathError> {
+    /// What an event switches, in this order; of coolant and the first tool [`Planner::notices`] tells.
+    pub(super) fn actions(&self, event: &ProgramEvent) -> Result<Vec<PathAction>, PathError> {
         let place = event.place;
-        let action = match event.action {
-            ProgramAction::Coolant { .. } | ProgramAction::ChangeTool(_) => return Ok(None),
+        Ok(match event.action {
+            ProgramAction::Coolant { .. } | ProgramAction::ChangeTool(_) => Vec::new(),
             // Weld data has taken its place.
-            ProgramAction::WeldOn(_) | ProgramAction::WeldOff => return Ok(None),
+            ProgramAction::WeldOn(_) | ProgramAction::WeldOff => Vec::new(),
             ProgramAction::Output(action) => {
                 self.check_output(&action, place)?;
-                action
+                vec![action]
             }
             ProgramAction::SpindleSpeed(rpm) => {
                 let side = self.spindle(event)?;
@@ -46,23 +46,32 @@ impl Planner {
                 if rpm > largest {
                     return Err(PathError::SpindleSpeed { place, rpm, largest });
                 }
-                PathAction::Power { side, watt: rpm }
+                vec![PathAction::Power { side, watt: rpm }]
             }
-            ProgramAction::SpindleOn(Turn::Clockwise) => {
+            ProgramAction::SpindleOn(turn) => {
                 let side = self.spindle(event)?;
-                PathAction::Beam { side, on: true }
-            }
-            ProgramAction::SpindleOn(Turn::CounterClockwise) => {
-                self.spindle(event)?;
-                let machine = self.name.clone();
-                return Err(PathError::SpindleSense { place, machine });
+                let on = PathAction::Beam { side, on: true };
+                match self.spindle_reversed(turn == Turn::CounterClockwise) {
+                    None if turn == Turn::CounterClockwise => {
+                        let machine = self.name.clone();
+                        return Err(PathError::SpindleSense { place, machine });
+                    }
+                    reversed => reversed.into_iter().chain([on]).collect(),
+                }
             }
             ProgramAction::SpindleOff => {
                 let side = self.spindle(event)?;
-                PathAction::Beam { side, on: false }
+                let off = PathAction::Beam { side, on: false };
+                [off].into_iter().chain(self.spindle_reversed(false)).collect()
             }
-        };
-        Ok(Some(action))
+        })
+    }
+
+    /// Switches the output with which the spindle turns the other way, if the machine file names one.
+    fn spindle_reversed(&self, on: bool) -> Option<PathAction> {
+        let name = self.program.spindle_reverse.as_ref()?;
+        let output = *self.output_names.outputs.get(name)?;
+        Some(PathAction::Output { output, on })
     }
 
     /// The beam that is the spindle: the one that stays on at rest.

@@ -3,7 +3,7 @@
 use super::targets::Tip;
 use super::tip_of_machine::TipOfMachine;
 use super::{PathError, Planner};
-use config::machine::{ArcPlane, LengthUnit, PathMode};
+use config::machine::{ArcPlane, LengthUnit, PathMode, ToolConfig};
 use nc::{
     Blend, CoordinateSystem, Laser, PathControl, Plane, Program, ProgramAction, SYSTEMS, Setup, TipAndAxes,
 };
@@ -13,6 +13,14 @@ use std::sync::Arc;
 
 /// A program may be read for a start this far off (mm, degrees).
 const SAME_START: f64 = 1e-6;
+
+/// A tool of the machine file.
+pub(super) fn tool(tool: &ToolConfig) -> nc::Tool {
+    nc::Tool {
+        length_mm: tool.length_mm,
+        diameter_mm: tool.diameter_mm,
+    }
+}
 
 impl Planner {
     /// What a program for this machine begins with, when the axes stand at `from` (mm, degrees): the modes of the machine
@@ -47,6 +55,8 @@ impl Planner {
             grbl_commands: program.passed_over.grbl_commands(),
             spindle_rpm: program.spindle_rpm,
             laser: self.laser(),
+            rapid_at_start: program.motion.is_some(),
+            r_at_initial_level: program.r_at_initial_level,
             feed_mm_min: program.feed_mm_min,
             kinematics: Some(Arc::new(kinematics)),
             ..Setup::default()

@@ -126,7 +126,7 @@ impl TryFrom<Document> for MachineFile {
             probe: d.probe,
             planning: d.planning,
             program: d.program,
-            tools: tools::lengths(d.tools)?,
+            tools: tools::by_number(d.tools)?,
         })
     }
 }

@@ -79,6 +79,14 @@ pub enum Mistake {
         /// The number of the beam.
         beam: u8,
     },
+    /// Nothing turns the spindle the other way.
+    #[error(
+        "program.spindle_reverse names \"{name}\", but needs an [outputs.{name}], and a spindle (a beam with stays_on_at_rest)"
+    )]
+    SpindleReverse {
+        /// Name of the output.
+        name: String,
+    },
     /// An input has only one of the keys of an answer.
     #[error(
         "{key} has {given} without {missing}: an input that answers needs both, one that programs wait for neither"
@@ -127,6 +135,7 @@ impl Mistake {
             Self::NoSuchBeam { key, .. } | Self::AnswerIncomplete { key, .. } | Self::ToolNumber { key } => {
                 key.clone()
             }
+            Self::SpindleReverse { .. } => "program.spindle_reverse".to_owned(),
             Self::AnswersNothing { key, .. } => format!("{key}.answers"),
             Self::Optics { .. } => "cameras.optics".to_owned(),
             Self::TrackerIncomplete { table } => (*table).to_owned(),

@@ -12,7 +12,10 @@ mod weak_protection;
 pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
 pub use process_io::{InputNames, OutputNames};
-pub use program::{ArcPlane, LaserWords, LengthUnit, PassedOver, PathMode, ProgramConfig, Rotary};
+pub use program::{
+    ArcPlane, FirstMotion, LaserWords, LengthUnit, PassedOver, PathMode, ProgramConfig, Rotary,
+};
+pub use tools::ToolConfig;
 pub use weak_protection::WeakProtection;
 
 use crate::probe::ProbeUnit;
@@ -55,8 +58,8 @@ pub struct MachineFile {
     pub planning: PlanningConfig,
     /// What NC programs begin with.
     pub program: ProgramConfig,
-    /// Lengths of tools by number, beyond the tip of this machine along its tool \[mm\].
-    pub tools: BTreeMap<u32, f64>,
+    /// Tools by number.
+    pub tools: BTreeMap<u32, ToolConfig>,
 }
 
 /// The tracker board, its slides and cameras.

@@ -28,6 +28,12 @@ pub struct ProgramConfig {
     pub passed_over: PassedOver,
     /// S of M3 and M4 in programs that have said none \[r/min\].
     pub spindle_rpm: Option<f64>,
+    /// The output that is on while the spindle turns by M4.
+    pub spindle_reverse: Option<String>,
+    /// The motion of axis words before any motion code.
+    pub motion: Option<FirstMotion>,
+    /// R of canned cycles that have none is the level where the first of them begins.
+    pub r_at_initial_level: bool,
     /// F of programs that have said none \[mm/min\].
     pub feed_mm_min: Option<f64>,
     /// The beam that M3, M4, M5 and S switch.
@@ -45,6 +51,9 @@ impl Default for ProgramConfig {
             rotary_deg: Rotary::default(),
             passed_over: PassedOver::default(),
             spindle_rpm: None,
+            spindle_reverse: None,
+            motion: None,
+            r_at_initial_level: false,
             feed_mm_min: None,
             laser: None,
         }
@@ -70,6 +79,13 @@ pub enum LengthUnit {
     Mm,
     /// As after G20.
     Inch,
+}
+
+/// What axis words before any motion code are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum FirstMotion {
+    /// A rapid.
+    G0,
 }
 
 /// Plane of arcs.
@@ -202,6 +218,7 @@ pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
         in_range(key, speed, speed > 0.0 && speed.is_finite(), "above 0")?;
     }
     laser(machine)?;
+    spindle_reverse(machine)?;
     let fitted = machine.motion.kinematics.fitted();
     for (axis, angle) in (AXES - 3..).zip(program.rotary_deg.into_array()) {
         let Some(angle) = angle else { continue };
@@ -213,6 +230,23 @@ pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
         }
     }
     Ok(())
+}
+
+/// There is a spindle, and an output of this name.
+fn spindle_reverse(machine: &MachineFile) -> Result<(), Mistake> {
+    let Some(name) = &machine.program.spindle_reverse else {
+        return Ok(());
+    };
+    let has_spindle = machine
+        .motion
+        .beams
+        .iter()
+        .flatten()
+        .any(|beam| beam.stays_on_at_rest);
+    if has_spindle && machine.outputs.outputs.contains_key(name) {
+        return Ok(());
+    }
+    Err(Mistake::SpindleReverse { name: name.clone() })
 }
 
 /// The beam is there, no other one is a spindle, and its S says how much of its power.

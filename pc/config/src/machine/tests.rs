@@ -474,7 +474,8 @@ fn programs_begin_with_the_modes_that_the_file_says() {
     assert_eq!(of(""), ProgramConfig::default());
     assert_eq!(of("[program]\nplane = \"G18\"").plane, ArcPlane::G18);
     let all = "[program]\nunits = \"inch\"\nplane = \"G19\"\ntip_control = false\npath_mode = \"G64\"\n\
-               tolerance_mm = 0.02\nrotary_deg = { B = 30.0 }\nspindle_rpm = 600\nfeed_mm_min = 300";
+               tolerance_mm = 0.02\nrotary_deg = { B = 30.0 }\nspindle_rpm = 600\nfeed_mm_min = 300\n\
+               motion = \"G0\"\nr_at_initial_level = true";
     let wanted = ProgramConfig {
         units: LengthUnit::Inch,
         plane: ArcPlane::G19,
@@ -487,6 +488,9 @@ fn programs_begin_with_the_modes_that_the_file_says() {
         },
         passed_over: PassedOver::default(),
         spindle_rpm: Some(600.0),
+        spindle_reverse: None,
+        motion: Some(FirstMotion::G0),
+        r_at_initial_level: true,
         feed_mm_min: Some(300.0),
         laser: None,
     };
@@ -501,6 +505,23 @@ fn programs_begin_with_the_modes_that_the_file_says() {
     let laser = of("[program]\nlaser = { beam = 1, full_s = 1000 }").laser;
     let (beam, full_s) = (1, 1000.0);
     assert_eq!(laser, Some(LaserWords { beam, full_s }));
+}
+
+#[test]
+fn an_output_turns_a_spindle_the_other_way() {
+    let stir = include_str!("../../../../machines/stir-gantry.toml");
+    let with = |more: &str| format!("{stir}\n{more}[program]\nspindle_reverse = \"left\"\n");
+    let text = with("[outputs.left]\nnumber = 3\n");
+    let program = MachineFile::parse("m.toml", &text).unwrap().program;
+    assert_eq!(program.spindle_reverse.as_deref(), Some("left"));
+    let said = "program.spindle_reverse names \"left\", but needs an [outputs.left], and a spindle";
+    for text in [
+        with(""),
+        pipe_with("[outputs.left]\nnumber = 3\n[program]\nspindle_reverse = \"left\"").0,
+    ] {
+        let error = error_of(&text);
+        assert!(error.contains(said), "{error}");
+    }
 }
 
 #[test]
@@ -634,11 +655,14 @@ fn what_programs_cannot_begin_with_is_told_with_file_line_and_key() {
 }
 
 #[test]
-fn tools_have_numbers_and_lengths() {
+fn tools_have_numbers_lengths_and_diameters() {
     let of = |more: &str| MachineFile::parse("m.toml", &pipe_with(more).0).unwrap().tools;
     assert!(of("").is_empty());
-    let tools = of("[tools.2]\nlength_mm = 12.5\n[tools.10]");
-    assert_eq!(tools.into_iter().collect::<Vec<_>>(), [(2, 12.5), (10, 0.0)]);
+    let tools = of("[tools.2]\nlength_mm = 12.5\ndiameter_mm = 6.0\n[tools.10]");
+    let tools = tools
+        .into_iter()
+        .map(|(number, tool)| (number, tool.length_mm, tool.diameter_mm));
+    assert_eq!(tools.collect::<Vec<_>>(), [(2, 12.5, 6.0), (10, 0.0, 0.0)]);
     for (more, line, said) in [
         (
             "[tools.two]",
@@ -651,6 +675,11 @@ fn tools_have_numbers_and_lengths() {
             "[tools.2]\nlength_mm = 1e4",
             1,
             "tools.2.length_mm is 10000, but must be from -1000 to 1000",
+        ),
+        (
+            "[tools.2]\ndiameter_mm = -1e4",
+            1,
+            "tools.2.diameter_mm is -10000, but must be from -1000 to 1000",
         ),
         ("[tools.2]\nlength = 1", 1, "unknown field `length`"),
     ] {

@@ -1,5 +1,6 @@
 //! Random programs of nearly everything that both interpreters know, lathe and threading aside. Most are right.
 
+mod compensation;
 mod cycles;
 mod expression;
 mod flow;
@@ -27,8 +28,13 @@ pub fn program(seed: u64, case: u64) -> String {
     }
     writer.block("G0 X0 Y0 Z20 A0 B0 C0");
     writer.block("F600 S1000");
-    for _ in 0..writer.random.between(3, 12) {
-        piece(&mut writer, 0);
+    if writer.random.percent(20) {
+        // Many a contour is not possible for its tool, and ends the program.
+        compensated(&mut writer);
+    } else {
+        for _ in 0..writer.random.between(3, 12) {
+            piece(&mut writer, 0);
+        }
     }
     let percent = writer.lines.first().is_some_and(|line| line == "%");
     let end = *writer.random.of(&["M2", "M2", "M30"]);
@@ -40,6 +46,21 @@ pub fn program(seed: u64, case: u64) -> String {
         writer.line("%");
     }
     writer.lines.join("\n") + "\n"
+}
+
+/// Contours with cutter compensation, after what changes where they are.
+fn compensated(writer: &mut Writer) {
+    for _ in 0..writer.random.below(3) {
+        match writer.random.below(4) {
+            0 => modes::units(writer),
+            1 => modes::tool(writer),
+            2 => modes::diameter(writer),
+            _ => modes::offset(writer),
+        }
+    }
+    for _ in 0..writer.random.between(1, 2) {
+        compensation::contour(writer);
+    }
 }
 
 /// Some blocks; so many loops and conditions are around them.

@@ -89,6 +89,12 @@ pub fn tool(writer: &mut Writer) {
     }
 }
 
+/// G10 L1 with a radius. Not of tool 1, of which `rs274` begins with the radius where the machine has no tool.
+pub fn diameter(writer: &mut Writer) {
+    let (number, radius) = (writer.random.between(2, 40), writer.length(4.0));
+    writer.block(&format!("G10 L1 P{number} R{radius:.4}"));
+}
+
 /// X Y Z where the peer does not know where it is: after a change of tools it asks its machine, and that of the program
 /// alone has left rotations of coordinate systems out; where one is rotated anew, it leaves G52 and G92 as they were turned.
 fn say_place(writer: &mut Writer) {

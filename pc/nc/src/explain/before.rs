@@ -24,6 +24,8 @@ pub(super) struct Before {
     pub(super) saved: usize,
     /// A hole after every motion.
     pub(super) drills: bool,
+    /// How far to the left of a contour the tip goes \[mm\].
+    pub(super) beside: Option<f64>,
     /// Where the tip is (mm, degrees), of which axes that is known, and whether no start can be assumed for the others.
     pub(super) at: Coordinates,
     pub(super) known: [bool; AXES],
@@ -57,6 +59,7 @@ impl Before {
             turns: state.spindle.turns(),
             saved: state.saved.len(),
             drills: state.modal_drilling.is_some(),
+            beside: state.compensation.left(),
             at: state.place(),
             known: state.known,
             lost: state.lost,

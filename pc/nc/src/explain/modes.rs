@@ -28,6 +28,16 @@ pub(super) fn changes(before: &Before, after: &Interpreter, moves: bool) -> Vec<
             figure(length)
         ));
     }
+    let beside = after.compensation.left();
+    if beside != before.beside {
+        changes.push(match beside {
+            Some(left) if left > 0.0 => {
+                format!("the tip goes {} mm to the left of the contour", figure(left))
+            }
+            Some(left) => format!("the tip goes {} mm to the right of the contour", figure(-left)),
+            None => "the tip goes to programmed places again".to_owned(),
+        });
+    }
     let speed = after.spindle.speed();
     let of_beam = after.setup.laser.is_some();
     if speed != before.spindle_speed {

@@ -1,11 +1,12 @@
 //! Contours as Siemens has them besides: RND=, RNDM=, CHF= and CHR= put something into the corner between a motion and the
 //! next one, CT goes on in the direction of the motion before, and ANG= gives the direction of a line.
 
-use super::pieces::{Cut, Insert, Piece, cut};
+use super::inserts::{Cut, Insert, cut};
 use crate::block::{Block, Word};
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::interpreter::Interpreter;
 use crate::offsets::Coordinates;
+use crate::pieces::Piece;
 use crate::program::{ArcForm, ArcWay, FeedRate, Plane, Way, Words};
 use crate::reader::Reader;
 use nalgebra::Vector2;
@@ -53,13 +54,24 @@ impl Reader {
         self.interpreter.corners.next = wanted.then(|| self.motion_after(block)).flatten();
     }
 
-    /// What is wrong ahead is told where it is carried out.
-    fn motion_after(&mut self, block: &Block) -> Option<Piece> {
+    /// A copy, prepared and without its paths, that has carried out `block`; none if that is wrong.
+    pub(crate) fn copy_behind(
+        &mut self,
+        block: &Block,
+        prepare: impl FnOnce(&mut Interpreter),
+    ) -> Option<Self> {
         let mut state = self.interpreter.without_blocks();
         state.corners.looks_ahead = true;
+        prepare(&mut state);
         let mut ahead = Self::at(self.position.clone(), state, self.options.clone());
         ahead.interpreter.block(block).ok()?;
         ahead.call_of(block).ok()?;
+        Some(ahead)
+    }
+
+    /// What is wrong ahead is told where it is carried out.
+    fn motion_after(&mut self, block: &Block) -> Option<Piece> {
+        let mut ahead = self.copy_behind(block, |_| ())?;
         ahead.interpreter = ahead.interpreter.without_blocks();
         for _ in 0..MOST_LINES_BETWEEN {
             if !ahead.block().ok()? || !ahead.interpreter.open {
@@ -101,12 +113,27 @@ impl Interpreter {
     /// Where the tip is: behind what was put into the last corner.
     pub(crate) fn place(&self) -> Coordinates {
         let mut at = self.at;
+        if let Some((plane, aside)) = self.compensation.aside() {
+            for (axis, value) in plane.axes().into_iter().zip(aside) {
+                at[axis] = value;
+            }
+        }
         if let Some(begins) = self.corners.begins {
             for (axis, value) in self.modal.plane.axes().into_iter().zip(begins.iter()) {
                 at[axis] = *value;
             }
         }
         at
+    }
+
+    /// The tip has come by this motion.
+    pub(crate) fn has_come_by(&mut self, piece: Piece) {
+        self.corners.last = Some(piece);
+    }
+
+    /// Whether `block` puts something into the corner behind it.
+    pub(crate) fn puts_into_corner(&self, block: &Block) -> Result<bool, NcError> {
+        Ok(self.insert(block)?.is_some())
     }
 
     /// The tip has come straight from there.

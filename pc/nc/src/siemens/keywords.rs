@@ -9,10 +9,14 @@ use crate::scanner::Scanner;
 pub(crate) const POINT_WORDS: [&str; 3] = ["I1", "J1", "K1"];
 
 /// Words and the codes that they are here.
-const CODES: [(&str, Code, Group); 14] = [
+const CODES: [(&str, Code, Group); 18] = [
     ("TRAORI", Code::TipOn, Group::ToolLength),
     ("TRAFOOF", Code::TipOff, Group::ToolLength),
     ("ORIAXES", Code::Hint, Group::Hint),
+    ("NORM", Code::StraightEntry, Group::Corners),
+    ("KONT", Code::EntryAround, Group::Corners),
+    ("KONTC", Code::EntryAround, Group::Corners),
+    ("KONTT", Code::EntryAround, Group::Corners),
     ("SUPA", Code::MachineAxes, Group::NonModal),
     ("CIP", Code::ArcThrough, Group::Motion),
     ("CT", Code::TangentArc, Group::Motion),
@@ -27,7 +31,7 @@ const CODES: [(&str, Code, Group); 14] = [
 ];
 
 /// Words without an effect here: what they ask for is always so, or what they change is not there.
-const WITHOUT_EFFECT: [&str; 47] = [
+const WITHOUT_EFFECT: [&str; 43] = [
     "COMPCAD",
     "COMPCURV",
     "COMPSURF",
@@ -61,10 +65,6 @@ const WITHOUT_EFFECT: [&str; 47] = [
     "DYNROUGH",
     "DYNSEMIFIN",
     "DYNFINISH",
-    "KONT",
-    "KONTC",
-    "KONTT",
-    "NORM",
     "CUT2D",
     "CUT2DF",
     "STOPRE",
@@ -80,8 +80,8 @@ const WITHOUT_EFFECT: [&str; 47] = [
 /// Words with a value without an effect here.
 const VALUES_WITHOUT_EFFECT: [&str; 5] = ["ADIS", "ADISPOS", "OTOL", "ATOL", "LIMS"];
 
-/// G codes without an effect here: where exact stops and corners of compensation are fine enough, and the dialect.
-const G_WITHOUT_EFFECT: [u32; 6] = [290, 450, 451, 601, 602, 603];
+/// G codes without an effect here: where exact stops are fine enough, and the dialect.
+const G_WITHOUT_EFFECT: [u32; 4] = [290, 601, 602, 603];
 /// The same of M: gears of the spindle.
 const M_WITHOUT_EFFECT: [u32; 6] = [40, 41, 42, 43, 44, 45];
 
@@ -169,7 +169,7 @@ pub(super) fn read(scanner: &mut Scanner, block: &mut Block) -> Result<bool, NcE
 
 /// Whether a word with this letter or name and this value changes nothing here.
 pub(crate) fn is_without_effect(address: &str, value: f64) -> bool {
-    let codes = match address {
+    let codes: &[u32] = match address {
         "G" => &G_WITHOUT_EFFECT,
         "M" => &M_WITHOUT_EFFECT,
         _ => return VALUES_WITHOUT_EFFECT.contains(&address),

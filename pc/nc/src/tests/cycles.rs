@@ -144,3 +144,43 @@ fn g80_goes_back_to_the_motion_before_the_cycle_and_may_stand_beside_another() {
         "{error}"
     );
 }
+
+#[test]
+fn cycles_without_r_begin_at_their_initial_level_where_the_machine_file_says_so() {
+    let read = |r_at_initial_level, body: &str| {
+        let setup = Setup {
+            r_at_initial_level,
+            ..Setup::default()
+        };
+        let options = Options {
+            setup: setup.into(),
+            ..Options::default()
+        };
+        interpret(&format!("{HEADER}G0 Z20\nF100\n{body}\nG80\nM2"), options)
+    };
+    let heights = |program: &Program| -> Vec<f64> {
+        let targets = program.paths[3..].iter().flat_map(|path| &path.targets);
+        targets.filter_map(|target| target.words.axes[2]).collect()
+    };
+    let (code, word) = ("G81", "R");
+    let error = read(false, "G98 G81 X5 Z-3").unwrap_err();
+    assert_eq!(error.problem, Problem::Missing { code, word });
+    for body in ["G98 G81 X5 Z-3\nX9", "G91 G98 G81 X5 Z-23\nX4"] {
+        let without = read(true, body).unwrap();
+        let r = if body.starts_with("G91") { "R0" } else { "R20" };
+        let with = read(false, &body.replace("X5", &format!("X5 {r}"))).unwrap();
+        assert_eq!(without.paths.len(), with.paths.len(), "{body}");
+        assert_eq!(heights(&without), heights(&with), "{body}");
+        assert!(heights(&without).contains(&-3.0), "{body}");
+        let told =
+            "without R a cycle begins at the level where the first one began, as the machine file says";
+        assert_eq!(
+            without
+                .notices
+                .iter()
+                .filter(|notice| notice.text == told)
+                .count(),
+            1
+        );
+    }
+}

@@ -189,3 +189,17 @@ fn lines_that_do_nothing_are_told_and_comments_are_not() {
 ";
     assert_eq!(told_with(options, text), wanted);
 }
+
+#[test]
+fn a_way_beside_a_contour_is_told_where_the_tip_goes() {
+    let text = "G21 G0 X0 Y0 Z0 A0 B0 C0 F600\nG41.1 D10 G1 X20\nX40\nY-30\nG40 X60\nM2\n";
+    let told = told(text);
+    for wanted in [
+        "2: G41.1 D10 G1 X20\n   the tip goes 5 mm to the left of the contour\n   straight, F 600 mm/min, to X20 Y5 Z0 mm, A0 B0 C0 deg in G54",
+        "4: Y-30\n   arc clockwise about Z, radius 5 mm about X40 Y0 mm of the tip, F 600 mm/min, to X45 Y0 Z0 mm",
+        "   straight, F 600 mm/min, to X45 Y-30 Z0 mm, A0 B0 C0 deg in G54\n",
+        "5: G40 X60\n   the tip goes to programmed places again\n   straight, F 600 mm/min, to X60 Y-30 Z0 mm",
+    ] {
+        assert!(told.contains(wanted), "{wanted}\n---\n{told}");
+    }
+}

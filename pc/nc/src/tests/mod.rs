@@ -1,5 +1,6 @@
 //! What programs mean, and what is refused where.
 
+mod compensation;
 mod coordinates;
 mod cycles;
 mod dialects;

@@ -136,3 +136,38 @@ fn a_word_belongs_to_the_code_that_needs_it() {
     );
     assert_eq!(problem("F600\nG1 X10 L2\nM2"), (Problem::Orphan("L".into()), 2));
 }
+
+#[test]
+fn axis_words_at_the_start_are_a_rapid_where_the_machine_file_says_so() {
+    let read = |rapid_at_start, text: &str| {
+        let setup = Setup {
+            rapid_at_start,
+            ..Setup::default()
+        };
+        let options = Options {
+            setup: setup.into(),
+            ..Options::default()
+        };
+        interpret(text, options)
+    };
+    let text = "G21 G80 G90\nG43 H1 Z50\nX5\nG1 Z2 F100\nG80\nG0 Z9\nM2";
+    assert_eq!(read(false, text).unwrap_err().problem, Problem::NoMotion);
+    let program = read(true, text).unwrap();
+    let motions: Vec<_> = program.paths.iter().map(|path| path.motion).collect();
+    let (rapid, feed) = (Motion::Rapid, Motion::Feed);
+    assert_eq!(motions, [rapid, rapid, feed, rapid]);
+    let told = "axis words before any motion code are those of a G0, as the machine file says";
+    assert_eq!(
+        program
+            .notices
+            .iter()
+            .filter(|notice| notice.text == told)
+            .count(),
+        1
+    );
+    // As ever after a motion code.
+    assert_eq!(
+        read(true, "G0 X1\nG80\nX2\nM2").unwrap_err().problem,
+        Problem::NoMotion
+    );
+}

@@ -1,6 +1,15 @@
 //! Outputs and spindle: what waits for a motion, and what ends the path.
 
 use super::*;
+
+#[test]
+fn a_weld_is_not_begun_while_the_spindle_turns_by_m4() {
+    let error = run("S600 M4\nWELDON=lap\nG1 X10 F100\nWELDOFF\nM2")
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("WELDON: the spindle turns by M4"), "{error}");
+    assert!(run("S600 M4\nM5\nWELDON=lap\nG1 X10 F100\nWELDOFF\nM2").is_ok());
+}
 use shared::protocol::{Channel, PathAction};
 
 /// Motion, targets and events of the paths after the header.

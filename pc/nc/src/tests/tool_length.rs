@@ -2,7 +2,6 @@
 
 use super::*;
 use shared::io::AXES;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A head whose tool leans from Z towards X by B; A turns it about itself when it is upright, and does nothing else.
@@ -24,10 +23,20 @@ impl TipAndAxes for Head {
     }
 }
 
+fn tool(length_mm: f64) -> Tool {
+    Tool {
+        length_mm,
+        diameter_mm: 8.0,
+    }
+}
+
 fn read_with(tools: &[(u32, f64)], body: &str) -> Result<Program, NcError> {
     let setup = Setup {
         kinematics: Some(Arc::new(Head)),
-        tools: tools.iter().copied().collect::<BTreeMap<_, _>>(),
+        tools: tools
+            .iter()
+            .map(|(number, length)| (*number, tool(*length)))
+            .collect(),
         ..Setup::default()
     };
     let options = Options {
@@ -149,4 +158,15 @@ fn a_length_before_the_first_motion_relies_on_nothing() {
     let program = interpret(text, Options::default()).unwrap();
     assert_eq!(program.assumes, None);
     assert_eq!(program.paths[0].targets[0].words.axes[2], Some(8.0));
+}
+
+#[test]
+fn a_tool_goes_beside_a_contour_with_its_length() {
+    let body = "T2 M6\nG43 H2\nG41 G1 X20\nX40\nZ-1\nY30";
+    assert_eq!(last(body), [Some(36.0), Some(30.0), None]);
+    assert_eq!(
+        last("T2 M6\nG43 H2\nG41 G1 X20\nX40\nZ-1"),
+        [None, None, Some(9.0)]
+    );
+    assert!(wrong("T2 M6\nG43 H2\nG41 G1 X20\nX40 B5").contains("not turned beside a contour"));
 }

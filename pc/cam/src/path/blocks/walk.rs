@@ -140,8 +140,8 @@ impl Walk {
             .map(|action| (0.0, action));
         let mut actions: Vec<(f64, PathAction)> = on.collect();
         for event in &events {
-            let action = planner.action(event)?;
-            actions.extend(action.map(|action| (event.after_mm, action)));
+            let switched = planner.actions(event)?;
+            actions.extend(switched.into_iter().map(|action| (event.after_mm, action)));
         }
         self.tip = tip;
         Ok(Step {

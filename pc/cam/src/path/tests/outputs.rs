@@ -90,7 +90,8 @@ fn machines_say_what_their_spindle_does_not_do() {
     let message = |body: &str| stir(body).unwrap_err().to_string();
     assert_eq!(
         message("G1 X610\n S600 M4"),
-        "line 6, column 7: the spindle of stir-gantry turns clockwise only: write M3"
+        "line 6, column 7: the spindle of stir-gantry turns clockwise only: write M3, or name the output that turns it the \
+         other way by spindle_reverse in [program] of the machine file"
     );
     assert_eq!(
         message("M3 S3001"),
@@ -143,4 +144,30 @@ fn outputs_hold_through_stops_but_not_through_rapids() {
     let seen: Vec<_> = paths[1..].iter().map(actions).collect();
     let all = vec![power(500.0), gate(true), tracking];
     assert_eq!(seen, [all.clone(), all, vec![], vec![power(500.0)]]);
+}
+
+#[test]
+fn m4_turns_the_spindle_the_other_way_by_an_output_until_m3_or_m5() {
+    let text = include_str!("../../../../../machines/stir-gantry.toml");
+    let more = "[outputs.left]\nnumber = 3\n[program]\nspindle_reverse = \"left\"\n";
+    let machine = MachineFile::parse("m.toml", &format!("{text}\n{more}")).unwrap();
+    let planner = Planner::build(&machine).unwrap();
+    let body = "S600 M4\nG1 X610\nM3\nX620\nM4\nX630\nM5\nX640\nM2";
+    let program = nc::interpret(&format!("{STIR}{body}"), nc::Options::default()).unwrap();
+    let paths = planner.program(&program, &machine.homed_axes(), None).unwrap();
+    let left = |on| (0.0, PathAction::Output { output: 2, on });
+    let seen: Vec<_> = paths
+        .iter()
+        .map(actions)
+        .filter(|actions| !actions.is_empty())
+        .collect();
+    let speed = power(600.0);
+    assert_eq!(seen[0], [speed, left(true), gate(true)]);
+    for (path, expected) in seen[1..].iter().zip([
+        vec![left(false), gate(true)],
+        vec![left(true), gate(true)],
+        vec![gate(false), left(false)],
+    ]) {
+        assert!(path.ends_with(&expected), "{path:?} {expected:?}");
+    }
 }
