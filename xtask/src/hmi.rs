@@ -1,6 +1,8 @@
 //! `seamwright-hmi`, the operator's screen. Its options are checked by itself; this adds only the machine and the folder of programs.
 
+use crate::browser;
 use crate::cargo::{self, target_directory};
+use crate::setup::Tool;
 use crate::weld::{BoardFlags, shipped};
 use anyhow::{Context, Result};
 use plant_file::COMMISSIONED;
@@ -9,8 +11,17 @@ use std::process::{Command, ExitCode};
 /// Kind of boards that the screen has of its own.
 const BOARDS: &str = "simulated";
 
+/// What it needs with `flags`.
+pub fn wants(flags: &[String]) -> &'static [Tool] {
+    let all = &[Tool::Screen, Tool::WasmTarget];
+    if serves_browsers(flags) { all } else { &all[..1] }
+}
+
 /// Builds and runs it with `flags`; gives back its exit code.
 pub fn run(flags: &[String]) -> Result<ExitCode> {
+    if serves_browsers(flags) {
+        browser::build(None)?;
+    }
     eprintln!("building seamwright-hmi");
     cargo::run(&["build", "--quiet", "--package", "seamwright-hmi", "--release"])?;
     let program = target_directory()?.join("release").join("seamwright-hmi");
@@ -23,6 +34,15 @@ pub fn run(flags: &[String]) -> Result<ExitCode> {
     ))
 }
 
+/// Whether it takes the page for browsers that is built here.
+fn serves_browsers(flags: &[String]) -> bool {
+    is_told(flags, "--serve") && !is_told(flags, "--browser")
+}
+
+fn is_told(flags: &[String], name: &str) -> bool {
+    flags.iter().any(|flag| flag.split('=').next() == Some(name))
+}
+
 /// What `flags` do not tell: the machine of `cargo xtask weld`, and the shipped programs.
 fn defaults(flags: &[String]) -> Vec<String> {
     let told = BoardFlags::from(flags, BOARDS);
@@ -33,10 +53,7 @@ fn defaults(flags: &[String]) -> Vec<String> {
     if told.is_commissioned() {
         defaults.extend(["--plant".to_owned(), COMMISSIONED.to_string()]);
     }
-    if !flags
-        .iter()
-        .any(|flag| flag.split('=').next() == Some("--programs"))
-    {
+    if !is_told(flags, "--programs") {
         defaults.extend(["--programs".to_owned(), shipped("programs")]);
     }
     defaults
@@ -61,5 +78,15 @@ mod tests {
         let real = of(&["--boards=192.168.7.10,192.168.7.11", "--programs=x"]);
         assert!(real[1].ends_with("machines/dual-beam-gantry.toml"), "{real:?}");
         assert_eq!(real.len(), 2);
+    }
+
+    #[test]
+    fn the_page_for_browsers_is_built_where_it_is_served_and_not_brought() {
+        let builds = |flags: &[&str]| {
+            let flags: Vec<String> = flags.iter().map(|flag| (*flag).to_owned()).collect();
+            wants(&flags).contains(&Tool::WasmTarget)
+        };
+        assert!(builds(&["--serve", "192.168.7.1:7443"]) && builds(&["--serve=192.168.7.1:7443"]));
+        assert!(!builds(&["--serve=192.168.7.1:7443", "--browser", "x"]) && !builds(&[]));
     }
 }

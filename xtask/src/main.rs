@@ -1,6 +1,7 @@
 //! Everything around the project: set-up, building for the boards, emulated boards, tests, benchmarks, sizes, flashing.
 
 mod bench;
+mod browser;
 mod cargo;
 mod emulate;
 mod firmware;
@@ -39,7 +40,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install what is missing: the Arm and Windows targets of Rust, QEMU, Aravis, Python, drivers and fonts of the screen
+    /// Install what is missing: the Arm, Windows and WebAssembly targets of Rust, QEMU, Aravis, Python, drivers and fonts of the screen
     Setup,
     /// Weld on two emulated boards, or with --boards virtual-nucleo on two models of the real one: set up, build, boot, and run
     /// `seamwright weld` with the flags given
@@ -50,12 +51,18 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         flags: Vec<String>,
     },
-    /// The operator's screen on simulated boards, in real time: set up, build, and open `seamwright-hmi` with the flags given
+    /// The operator's screen on simulated boards, in real time: set up, build, and open `seamwright-hmi` with the flags given; with --serve
+    /// also the page for browsers
     #[command(disable_help_flag = true)]
     Hmi {
         /// Flags of `seamwright-hmi`; the machine defaults to the dual-beam gantry
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         flags: Vec<String>,
+    },
+    /// The page for browsers, which `seamwright-hmi --serve` gives to viewers: set up, build for WebAssembly, and pack
+    Browser {
+        /// Folder to write it into, for --browser; [default: browser beside the release of seamwright-hmi, which takes it from there]
+        folder: Option<PathBuf>,
     },
     /// Boot both emulated boards and keep them until Ctrl-C
     Emulate {
@@ -73,6 +80,9 @@ enum Task {
         /// Test the model of the real board instead, with both images freshly built
         #[arg(long)]
         boards: Option<test::OtherBoards>,
+        /// Test the page for browsers in Chromium instead
+        #[arg(long, conflicts_with = "boards")]
+        browser: bool,
     },
     /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7; run programs through the planner
     #[command(subcommand)]
@@ -111,11 +121,16 @@ fn main() -> ExitCode {
                 machine.map_or_else(|| Ok(DEFAULT_MACHINE.to_owned()), |file| machine::name(&file))?;
             emulate::run(rate, machine, plant.unwrap_or_default())
         }),
-        Task::Hmi { flags } => set_up(&[setup::Tool::Screen]).and_then(|()| hmi::run(&flags)),
+        Task::Hmi { flags } => set_up(hmi::wants(&flags)).and_then(|()| hmi::run(&flags)),
+        Task::Browser { folder } => set_up(&[setup::Tool::WasmTarget])
+            .and_then(|()| browser::build(folder.as_deref()))
+            .map(|_| ExitCode::SUCCESS),
         Task::Check => set_up(&[setup::Tool::Components, setup::Tool::Screen]).map(|()| test::check()),
-        Task::Test { boards: None } => set_up(&setup::ALL).map(|()| test::run()),
+        Task::Test { browser: true, .. } => set_up(&setup::BROWSER).and_then(|()| test::browser()),
+        Task::Test { boards: None, .. } => set_up(&setup::ALL).map(|()| test::run()),
         Task::Test {
             boards: Some(test::OtherBoards::VirtualNucleo),
+            ..
         } => set_up(&setup::VIRTUAL_TESTS).map(|()| test::virtual_nucleo()),
         Task::Bench(benchmark) => set_up(benchmark.wants()).and_then(|()| benchmark.run()),
         Task::Fuzz(arguments) => fuzz::run(&arguments),

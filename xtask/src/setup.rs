@@ -15,6 +15,10 @@ pub enum Tool {
     ArmTarget,
     /// Rust's library for the PC's programs on Windows.
     WindowsTarget,
+    /// Rust's library for browsers.
+    WasmTarget,
+    /// A browser, for tests.
+    Chromium,
     /// Formatter and linter.
     Components,
     /// The emulator.
@@ -37,13 +41,16 @@ pub enum Tool {
 
 /// Windows on the PC, as compilers call it.
 pub const WINDOWS: &str = "x86_64-pc-windows-gnu";
+/// Browsers, as compilers call them.
+pub const WASM: &str = "wasm32-unknown-unknown";
 /// Version of cargo-mutants whose flags and files are known here.
 const MUTANTS: &str = "27.1.0";
 
-/// For everything but counting, changing the code and comparing interpreters.
-pub const ALL: [Tool; 8] = [
+/// For everything but counting, changing the code, comparing interpreters and the tests in a browser.
+pub const ALL: [Tool; 9] = [
     Tool::ArmTarget,
     Tool::WindowsTarget,
+    Tool::WasmTarget,
     Tool::Components,
     Tool::Qemu,
     Tool::Aravis,
@@ -57,6 +64,8 @@ pub const EMULATION: [Tool; 2] = [Tool::ArmTarget, Tool::Qemu];
 pub const VIRTUAL: [Tool; 2] = [Tool::ArmTarget, Tool::UnicornBuild];
 /// For the tests of the virtual board.
 pub const VIRTUAL_TESTS: [Tool; 3] = [Tool::ArmTarget, Tool::UnicornBuild, Tool::Components];
+/// For the tests in a browser.
+pub const BROWSER: [Tool; 4] = [Tool::WasmTarget, Tool::Aravis, Tool::Screen, Tool::Chromium];
 /// For counting instructions.
 pub const COUNTING: [Tool; 3] = [Tool::ArmTarget, Tool::Qemu, Tool::Valgrind];
 
@@ -66,6 +75,12 @@ pub fn run(wants: &[Tool]) -> Result<()> {
         match tool {
             Tool::ArmTarget => rust_target(TARGET)?,
             Tool::WindowsTarget => rust_target(WINDOWS)?,
+            Tool::WasmTarget => rust_target(WASM)?,
+            Tool::Chromium => debian(
+                &["chromium"],
+                || runs("chromium", &["--version"]),
+                "install Chromium by hand, as `chromium`",
+            )?,
             Tool::Components => components()?,
             Tool::Qemu => debian(
                 &["qemu-system-arm"],

@@ -6,10 +6,11 @@
 //! features of its dependencies, and these depend on what is selected.
 
 use crate::bench;
+use crate::browser;
 use crate::cargo::{self, cargo, target_directory};
 use crate::emulate;
 use crate::firmware::{Board, Firmware, TARGET};
-use crate::setup::WINDOWS;
+use crate::setup::{WASM, WINDOWS};
 use crate::side_by_side;
 use crate::size;
 use crate::tally::Tally;
@@ -29,6 +30,9 @@ const EMULATED: [&str; 4] = ["--test", "boards", "--test", "emulated"];
 /// Feature of the PC that needs the library of real cameras; its tests take the simulated one that it comes with. One set of
 /// features for everything: without it the PC's programs are linted for Windows, and tested by [`check`].
 const CAMERAS: [&str; 2] = ["--features", "seamwright/aravis"];
+
+/// Environment variable with the folder of the page for browsers.
+const BROWSER_VARIABLE: &str = "SEAMWRIGHT_BROWSER";
 
 /// Of the tests on boards, the one that the suite runs on the model of the real one, too.
 const ON_VIRTUAL_BOARDS: [&str; 1] = ["welds::the_shipped_job_at_5_m_per_min"];
@@ -58,6 +62,19 @@ pub fn virtual_nucleo() -> ExitCode {
     tally.close()
 }
 
+/// Builds the page for browsers, and tests it in one.
+pub fn browser() -> Result<ExitCode> {
+    let folder = browser::build(None)?;
+    let mut tally = Tally::default();
+    tally.test("tests in a browser", || {
+        let tests = ["--test", "screen", "--", "--ignored", "browser::"];
+        let mut command = cargo(&[&["test", "--workspace"], &CAMERAS[..], &tests].concat())?;
+        command.env(BROWSER_VARIABLE, folder);
+        Ok(command)
+    });
+    Ok(tally.close())
+}
+
 /// Runs what needs cargo only: format, lints, tests of the host, with whole jobs on simulated boards.
 pub fn check() -> ExitCode {
     let mut tally = Tally::default();
@@ -78,6 +95,9 @@ pub fn run() -> ExitCode {
             "--target",
             WINDOWS,
         ])
+    });
+    tally.check("lints of the page for browsers", || {
+        clippy(&["--package", "seamwright-browser", "--target", WASM])
     });
     let mut packages = vec!["--target", TARGET];
     for firmware in Firmware::ALL {

@@ -74,6 +74,9 @@ pub enum Event {
     },
 }
 
+/// What [`Event::End`] says where the operator has stopped the job.
+pub const STOPPED: &str = "stopped by the operator; beams are off and the machine is at rest";
+
 impl Event {
     /// Whether many of its kind come every second. A subscriber that is slow loses the oldest of these; all others
     /// are never lost.

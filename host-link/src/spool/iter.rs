@@ -102,3 +102,9 @@ fn read_exact_at(file: &File, mut to: &mut [u8], mut at: u64) -> io::Result<()> 
     }
     Ok(())
 }
+
+/// Where there are no files, as in a browser.
+#[cfg(not(any(unix, windows)))]
+fn read_exact_at(_: &File, _: &mut [u8], _: u64) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
+}

@@ -3,40 +3,36 @@
 //! The screen is one more client of [`host_link::control`]: it sends [`host_link::Command`]s and subscribes to events, as the
 //! terminal does, and has no other way to a board. It never delays a job: what it is too slow for is dropped by its subscription.
 //!
-//! - [`drawn`]: what pages draw of a program.
-//! - [`seen`]: all that pages for looking are drawn from.
 //! - [`loaded`]: a program that was read, planned and predicted for a machine, before anything moves.
 //! - [`running`]: its job, on a thread of its own.
-//! - [`live`]: what the screen knows of that job, folded from its events; bounded, however long the job.
 //! - [`commissioning`]: motors while they are commissioned.
 //! - [`parameters`]: the machine file while its parameters are changed.
 //! - [`records`]: reports of past jobs, read back.
-//! - [`texts`]: everything that the screen says, in every language.
 //! - [`teaching`]: places of the tip that are being taught, for a part.
 //! - [`access`]: who may do what.
 //! - [`record`]: what happened, in a file that outlives the screen.
 //! - [`settings`]: how the screen looks, and its PINs, in a file.
-//! - [`viewing`]: a screen that shows what another one serves.
+//! - [`connection`]: that of a screen that watches another one.
 //! - [`serving`]: what this one serves to viewers.
 //! - `sockets`: what both need.
 //! - [`station`]: what is loaded, the job that runs, and what may be asked of it now.
 //! - [`screen`]: the pages. They read the station and ask it for what the operator wants.
+//!
+//! What is seen, and the pages that only show it, are [`view`]'s.
 
 pub mod access;
 pub mod commissioning;
-pub mod drawn;
-pub mod live;
+pub mod connection;
 pub mod loaded;
 pub mod parameters;
 pub mod record;
 pub mod records;
 pub mod running;
 pub mod screen;
-pub mod seen;
 pub mod serving;
 pub mod settings;
 mod sockets;
 pub mod station;
 pub mod teaching;
-pub mod texts;
-pub mod viewing;
+
+pub use view::{drawn, live, seen, texts, viewing};

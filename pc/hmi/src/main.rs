@@ -3,14 +3,15 @@
 use anyhow::anyhow;
 use clap::Parser;
 use eframe::egui;
+use hmi::connection;
 use hmi::running::Place;
-use hmi::screen::{Screen, Viewer};
+use hmi::screen::Screen;
 use hmi::serving::Server;
 use hmi::serving::identity::Identity;
+use hmi::serving::page::Page;
 use hmi::settings::Settings;
 use hmi::station::Station;
 use hmi::texts::Language;
-use hmi::viewing;
 use plant_file::PlantChoice;
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -55,6 +56,10 @@ struct Arguments {
     /// Serve what the screen shows to viewers at this address, over TLS; the page Screen says the token
     #[arg(long, value_name = "ADDRESS:PORT")]
     serve: Option<SocketAddr>,
+    /// Folder of the page for browsers, as `cargo xtask browser` makes it
+    /// [default: browser beside this program, if it is there]
+    #[arg(long, value_name = "DIR", requires = "serve")]
+    browser: Option<PathBuf>,
     /// Certificate for --serve, in PEM, with those that it is signed by
     /// [default: one signed by itself, made once and kept beside the settings]
     #[arg(long, value_name = "FILE", requires_all = ["serve", "key"])]
@@ -109,12 +114,12 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     }
     let fullscreen = arguments.fullscreen;
     if let Some(address) = arguments.watch {
-        let place = viewing::connection::Place {
+        let place = connection::Place {
             address,
             token: arguments.token.unwrap_or_default(),
             fingerprint: arguments.fingerprint,
         };
-        return open(fullscreen, move || Box::new(Viewer::new(place, settings)));
+        return open(fullscreen, move || Box::new(connection::viewer(place, settings)));
     }
     // What is wrong is said before a window opens.
     let machine = arguments.machine.clone().unwrap_or_default();
@@ -148,7 +153,10 @@ fn serve(arguments: &Arguments, settings: &mut Settings) -> anyhow::Result<Optio
         (Some(certificate), Some(key)) => Identity::read(certificate, key)?,
         _ => Identity::own(settings.folder(), &address.ip().to_string())?,
     };
-    Server::start(address, &identity, &settings.token()?).map(Some)
+    let token = settings.token()?;
+    let folder = arguments.browser.clone().or_else(Page::usual_folder);
+    let page = folder.map(|folder| Page::read(&folder, &token)).transpose()?;
+    Server::start(address, &identity, &token, page).map(Some)
 }
 
 /// Opens a window for `app`, until it is closed.

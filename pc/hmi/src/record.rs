@@ -2,7 +2,7 @@
 //! slow disk delays nothing.
 
 use crate::access::Level;
-use crate::live::{Entry, Severity};
+use crate::live::{Earlier, Entry, Severity};
 use crate::texts::{Language, Words};
 use anyhow::{Context, anyhow};
 use jiff::ZonedDateTime;
@@ -25,19 +25,6 @@ const WAITING: usize = 1024;
 const READ_BACK: usize = 1000;
 /// What closing the screen waits for lines that are not written yet.
 const PATIENCE: Duration = Duration::from_secs(2);
-
-/// An entry of a day before, or of a screen before.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Earlier {
-    /// Wall time after RFC 3339.
-    pub time: String,
-    /// How much it mattered.
-    pub severity: Severity,
-    /// The level that somebody at the screen had.
-    pub level: String,
-    /// What, in English.
-    pub text: String,
-}
 
 /// See the module.
 #[derive(Debug)]

@@ -9,38 +9,12 @@ use config::{kept, sentence};
 use serde::{Deserialize, Serialize};
 use std::fs::OpenOptions;
 use std::io::{Error as IoError, ErrorKind};
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use view::look::{Look, SIZES};
 
-/// Sizes that can be chosen.
-pub const SIZES: RangeInclusive<f32> = 0.75..=2.5;
 /// What the file begins with.
 const COMMENT: &str =
     "# Written by the operator's screen. Without this file it begins as usual, without PINs.\n";
-
-/// How the screen looks.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Look {
-    /// The language.
-    pub language: Language,
-    /// Black, white and few colours.
-    pub high_contrast: bool,
-    /// Stop and controls on the left.
-    pub left_handed: bool,
-    /// Size of everything; 1 is for a panel of 1280 × 800.
-    pub zoom: f32,
-}
-
-impl Default for Look {
-    fn default() -> Self {
-        Self {
-            language: Language::default(),
-            high_contrast: false,
-            left_handed: false,
-            zoom: 1.0,
-        }
-    }
-}
 
 /// What is in the file.
 #[derive(Debug, Serialize, Deserialize)]

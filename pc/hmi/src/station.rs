@@ -5,10 +5,11 @@ mod guarded;
 mod work_offsets;
 
 use crate::access::Access;
+use crate::live::Earlier;
 use crate::live::{Journal, Live};
 use crate::loaded::Loaded;
 use crate::parameters::Parameters;
-use crate::record::{Earlier, Record, earlier};
+use crate::record::{Record, earlier};
 use crate::running::{Machine, Outcome, Place, Running, Task};
 use crate::seen::{Seen, Standing};
 use crate::serving::stage::Stage;

@@ -5,6 +5,7 @@ use eframe::egui::{Event, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use emulator::{Boards, Options, SESSION_VARIABLE, bound_to_parent};
+use hmi::connection::{self, Connection};
 use hmi::running::Place;
 use hmi::screen::{Page, Screen};
 use hmi::serving::identity::Identity;
@@ -12,8 +13,7 @@ use hmi::serving::token::Token;
 use hmi::serving::{Server, VIEWERS};
 use hmi::settings::Settings;
 use hmi::station::Station;
-use hmi::viewing;
-use hmi::viewing::connection::{Connection, News};
+use hmi::viewing::{Connection as _, News};
 use host_link::events::Question;
 use plant_file::{DEFAULT_MACHINE, PlantChoice};
 use shared::state::State;
@@ -57,8 +57,8 @@ fn watched(screen: &mut Screen) -> Vec<(Connection, usize)> {
     let identity = Identity::own(None, "127.0.0.1").expect("a certificate");
     let token = Token::random().expect("random numbers");
     let at = SocketAddr::from(([127, 0, 0, 1], 0));
-    let server = Server::start(at, &identity, &token).expect("it serves");
-    let place = viewing::connection::Place {
+    let server = Server::start(at, &identity, &token, None).expect("it serves");
+    let place = connection::Place {
         address: server.told().address.to_string(),
         token: token.text().to_owned(),
         fingerprint: Some(identity.fingerprint()),
@@ -110,7 +110,7 @@ impl Bench {
     fn look(&mut self) {
         for (viewer, messages) in &mut self.1 {
             let is_message = |news: &News| matches!(news, News::Message(_));
-            *messages += viewer.news().filter(is_message).count();
+            *messages += viewer.news().iter().filter(|news| is_message(news)).count();
         }
     }
 

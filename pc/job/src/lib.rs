@@ -49,7 +49,7 @@ use feeding::Feeding;
 use following::follow;
 use host_link::Control;
 use host_link::boards::{Boards, LinkError};
-use host_link::events::{Event, Next, Phase};
+use host_link::events::{Event, Next, Phase, STOPPED};
 use host_link::spool::Spooling;
 use nc::{InputEvent, Program, Wait};
 use parts::PartFile;
@@ -167,7 +167,7 @@ pub enum JobError {
     #[error(transparent)]
     Camera(#[from] ImagesError),
     /// The operator stopped it.
-    #[error("stopped by the operator; beams are off and the machine is at rest")]
+    #[error("{STOPPED}")]
     Interrupted,
     /// There is no operator who could start the next block or end a hold.
     #[error(

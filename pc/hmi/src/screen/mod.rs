@@ -6,41 +6,31 @@ mod bar;
 mod commission;
 mod jog;
 mod levels;
-mod pages;
 mod parameters;
-mod plot;
+mod qr;
 mod run;
 mod set_up;
 mod settings;
 mod teach;
-mod theme;
-mod viewer;
 mod welds;
 
-pub use crate::settings::Look;
-pub use pages::Page;
-pub use viewer::Viewer;
+pub use ::view::look::Look;
+pub use ::view::screen::Page;
 
 use crate::access::Pins;
 use crate::serving::Server;
 use crate::settings::Settings;
 use crate::station::{Action, Station};
-use crate::texts::{Text, Words};
-use eframe::egui::{self, Key, Modifiers, Response, RichText, Ui, Visuals};
+use ::view::screen::theme::Theme;
+use ::view::screen::{self as view, BAR, FRAME, RAIL, bare, nothing, pages, plot, scroll, title};
+use eframe::egui::{self, Key, Modifiers, Ui, Visuals};
 use host_link::Command;
 use std::cell::Cell;
+use std::ops::Deref;
 use std::time::{Duration, Instant};
-use theme::Theme;
 
-/// What a screen that shows something live waits before it is drawn anew: 20 times a second.
-const FRAME: Duration = Duration::from_millis(50);
-/// The same, where nothing happens.
+/// What a screen waits before it is drawn anew, where nothing happens.
 const IDLE: Duration = Duration::from_millis(250);
-/// Height of what is always in sight \[points\].
-const BAR: f32 = 76.0;
-/// Width of the list of pages \[points\].
-const RAIL: f32 = 124.0;
-
 /// The screen.
 pub struct Screen {
     /// What it shows and commands.
@@ -70,27 +60,16 @@ pub struct Screen {
 
 /// What every page is given.
 struct View<'a> {
-    words: Words,
-    theme: &'a Theme,
-    now: Duration,
+    view: view::View<'a>,
     /// A PIN is asked for.
     asks: Cell<Option<access::Purpose>>,
-    /// What is said where no program is loaded.
-    no_program: Text,
 }
 
-impl<'a> View<'a> {
-    /// By the `look` of the screen, which `ui` takes on.
-    fn of(ui: &Ui, look: &Look, theme: &'a Theme, now: Duration) -> Self {
-        theme.apply(ui.ctx());
-        ui.ctx().set_zoom_factor(look.zoom);
-        Self {
-            words: Words(look.language),
-            theme,
-            now,
-            asks: Cell::new(None),
-            no_program: Text::NoProgram,
-        }
+impl<'a> Deref for View<'a> {
+    type Target = view::View<'a>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.view
     }
 }
 
@@ -153,7 +132,10 @@ impl Screen {
     /// Draws everything, and does what is asked for.
     fn show(&mut self, ui: &mut Ui) {
         let theme = Theme::of(&self.look);
-        let view = View::of(ui, &self.look, &theme, self.now());
+        let view = View {
+            view: view::View::of(ui, &self.look, &theme, self.now()),
+            asks: Cell::new(None),
+        };
         if ui.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) {
             self.station.touch(view.now);
         }
@@ -289,26 +271,4 @@ impl eframe::App for Screen {
     fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
         visuals.panel_fill.to_normalized_gamma_f32()
     }
-}
-
-/// A panel without a ground of its own: where graphics are drawn by software every layer counts.
-fn bare(panel: egui::Panel) -> egui::Panel {
-    panel.frame(egui::Frame::new().inner_margin(egui::Margin::symmetric(8, 2)))
-}
-
-/// What may be higher than the panel.
-fn scroll() -> egui::ScrollArea {
-    egui::ScrollArea::vertical().auto_shrink(false)
-}
-
-/// A small heading.
-fn title(ui: &mut Ui, view: &View, text: &str) -> Response {
-    ui.label(RichText::new(text).size(14.0).color(view.theme.faint))
-}
-
-/// What is said where there is nothing to show.
-fn nothing(ui: &mut Ui, view: &View, text: Text) {
-    ui.centered_and_justified(|ui| {
-        ui.label(RichText::new(view.words.say(text)).color(view.theme.faint));
-    });
 }

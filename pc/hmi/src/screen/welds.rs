@@ -1,6 +1,5 @@
 //! The page of past jobs: the reports of a folder, one beside another.
 
-use super::run::line;
 use super::{View, bare};
 use crate::records::{Judged, Record, folders};
 use crate::texts::Text;
@@ -9,6 +8,7 @@ use eframe::egui::{self, Button, Color32, Grid, Label, RichText, ScrollArea, Tex
 use egui_plot::Plot;
 use shared::io::{SLIDE_NAMES, SLIDES};
 use std::path::{Path, PathBuf};
+use view::screen::run::line;
 
 /// Width of the list \[points\].
 const LIST: f32 = 280.0;

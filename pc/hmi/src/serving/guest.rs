@@ -1,6 +1,7 @@
 //! A connection, from its request to its end. What a viewer sends ends it: there is nothing that it could ask for.
 
 use super::VIEWERS;
+use super::page::Page;
 use super::publisher::{Closed, Seat, Viewers};
 use super::request::{self, Request};
 use super::token::Token;
@@ -32,6 +33,13 @@ const LARGEST: usize = 4096;
 /// Why a viewer is sent away.
 const ONLY_WATCHES: &str = "viewers only watch: this screen takes no message from them";
 
+/// What a browser is told that asks for a page where there is none.
+const NO_PAGE: [&str; 2] = [
+    "Content-Type: text/plain; charset=utf-8\r\nCache-Control: no-store\r\n",
+    "This screen has no page for browsers: `cargo xtask browser` makes it, and --browser DIR or a folder `browser` beside \
+     seamwright-hmi says where it is. seamwright-hmi --watch watches without it.\n",
+];
+
 type Stream = StreamOwned<ServerConnection, TcpStream>;
 
 /// What a connection needs to be let in.
@@ -39,6 +47,7 @@ type Stream = StreamOwned<ServerConnection, TcpStream>;
 pub(super) struct Door {
     pub tls: Arc<ServerConfig>,
     pub token: Token,
+    pub page: Option<Page>,
     pub viewers: Viewers,
 }
 
@@ -63,13 +72,20 @@ impl Door {
         let accept_key = match &request {
             Request {
                 is_allowed: false, ..
-            } => return answer(&mut stream, "401 Unauthorized", "WWW-Authenticate: Bearer\r\n"),
+            } => {
+                return answer(
+                    &mut stream,
+                    "401 Unauthorized",
+                    "WWW-Authenticate: Bearer\r\n",
+                    b"",
+                );
+            }
             Request {
                 accept_key: Some(key),
                 path,
                 ..
             } if path == PATH => key,
-            _ => return answer(&mut stream, "404 Not Found", ""),
+            Request { path, .. } => return self.give(&mut stream, path),
         };
         let upgrade = "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n";
         write!(stream, "{upgrade}Sec-WebSocket-Accept: {accept_key}\r\n\r\n")?;
@@ -81,6 +97,18 @@ impl Door {
         let socket = WebSocket::from_partially_read(stream, request.rest, Role::Server, Some(config));
         self.show(socket);
         Ok(())
+    }
+
+    /// Gives the file of the page that is at `path`.
+    fn give(&self, stream: &mut Stream, path: &str) -> std::io::Result<()> {
+        match &self.page {
+            Some(page) => match page.file(path) {
+                Some((header, bytes)) => answer(stream, "200 OK", &header, bytes),
+                None => answer(stream, "404 Not Found", "", b""),
+            },
+            None if path == "/" => answer(stream, "404 Not Found", NO_PAGE[0], NO_PAGE[1].as_bytes()),
+            None => answer(stream, "404 Not Found", "", b""),
+        }
     }
 
     fn show(&self, mut socket: WebSocket<Stream>) {
@@ -150,11 +178,13 @@ fn close(socket: &mut WebSocket<Stream>, code: CloseCode, reason: String) {
     }
 }
 
-fn answer(stream: &mut Stream, status: &str, header: &str) -> std::io::Result<()> {
+fn answer(stream: &mut Stream, status: &str, header: &str, content: &[u8]) -> std::io::Result<()> {
     write!(
         stream,
-        "HTTP/1.1 {status}\r\n{header}Content-Length: 0\r\nConnection: close\r\n\r\n"
+        "HTTP/1.1 {status}\r\n{header}Content-Length: {}\r\nConnection: close\r\n\r\n",
+        content.len()
     )?;
+    stream.write_all(content)?;
     stream.conn.send_close_notify();
     stream.flush()
 }

@@ -4,10 +4,12 @@
 //! - `thinning`: events of the job and the stage as messages, few enough for a tablet.
 //! - `publisher`: the thread that sends them to all viewers, waiting for none.
 //! - `guest`: a connection, from its request to its end.
+//! - [`page`]: what a browser is given.
 //! - [`identity`]: the certificate.
 //! - [`token`]: what a viewer has to know.
 
 pub mod identity;
+pub mod page;
 pub mod stage;
 pub mod token;
 
@@ -21,6 +23,7 @@ mod ticks;
 use anyhow::Context;
 use guest::Door;
 use identity::Identity;
+use page::Page;
 use publisher::Viewers;
 use stage::Stage;
 use std::net::{SocketAddr, TcpListener};
@@ -52,16 +55,31 @@ pub struct Told {
     pub address: SocketAddr,
     /// The token.
     pub token: String,
+    /// There is a page for browsers.
+    pub has_page: bool,
     /// SHA-256 of the certificate, in hexadecimal digits.
     pub fingerprint: String,
 }
 
+impl Told {
+    /// What a browser opens, where there is a page for it.
+    pub fn link(&self) -> Option<String> {
+        let Self { address, token, .. } = self;
+        self.has_page.then(|| format!("https://{address}/?token={token}"))
+    }
+}
+
 impl Server {
-    /// Serves at `address`; port 0 is any that is free.
+    /// Serves at `address`, and the `page` to browsers; port 0 is any that is free.
     ///
     /// # Errors
     /// It cannot listen there, or the certificate and its key do not fit.
-    pub fn start(address: SocketAddr, identity: &Identity, token: &Token) -> anyhow::Result<Self> {
+    pub fn start(
+        address: SocketAddr,
+        identity: &Identity,
+        token: &Token,
+        page: Option<Page>,
+    ) -> anyhow::Result<Self> {
         let listen = || -> std::io::Result<(TcpListener, SocketAddr)> {
             let listener = TcpListener::bind(address)?;
             listener.set_nonblocking(true)?;
@@ -78,11 +96,13 @@ impl Server {
         let told = Told {
             address,
             token: token.text().to_owned(),
+            has_page: page.is_some(),
             fingerprint: identity.fingerprint(),
         };
         let door = Arc::new(Door {
             tls: identity.server()?,
             token: token.clone(),
+            page,
             viewers: viewers.clone(),
         });
         let shared = (stage.clone(), viewers.clone(), Arc::clone(&stop));

@@ -2,7 +2,7 @@
 
 use super::{Action, Station};
 use crate::access::{Access, Event, Level, Refusal};
-use crate::record::Earlier;
+use crate::live::Earlier;
 use anyhow::bail;
 use host_link::{ByHand, Command};
 use std::time::Duration;

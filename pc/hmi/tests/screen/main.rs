@@ -2,6 +2,8 @@
 
 mod access;
 mod bench;
+mod browser;
+mod chromium;
 mod commission;
 mod day;
 mod parameters;

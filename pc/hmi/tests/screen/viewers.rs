@@ -3,8 +3,9 @@
 use crate::bench::{Bench, PROGRAM, drawn, keep_picture};
 use crate::watching::{COMMANDING, HERE, Service, Watcher};
 use egui_kittest::kittest::Queryable;
+use hmi::connection;
 use hmi::live::{Severity, What};
-use hmi::screen::{Page, Viewer};
+use hmi::screen::Page;
 use hmi::serving::VIEWERS;
 use hmi::settings::Settings;
 use hmi::texts::{Language, Words};
@@ -139,6 +140,95 @@ fn without_the_token_there_is_an_empty_401_and_nothing_else() {
 }
 
 #[test]
+fn a_browser_with_the_token_is_given_the_page_and_its_files_and_nobody_else() {
+    let service = Service::new();
+    let folder = tempfile::tempdir().expect("a folder");
+    let files = [
+        ("/", "index.html", "text/html; charset=utf-8", None),
+        ("/start.js", "start.js", "text/javascript; charset=utf-8", None),
+        (
+            "/seamwright.js",
+            "seamwright.js.gz",
+            "text/javascript; charset=utf-8",
+            Some("gzip"),
+        ),
+        (
+            "/seamwright.wasm",
+            "seamwright.wasm.gz",
+            "application/wasm",
+            Some("gzip"),
+        ),
+    ];
+    for (_, name, _, _) in files {
+        std::fs::write(folder.path().join(name), format!("this is {name}")).expect("written");
+    }
+    let server = service.start_with(HERE, folder.path());
+    let at = server.told().address;
+    let token = service.token.text();
+    let ask = |path: &str| {
+        let mut raw = service.raw(at);
+        raw.send(&format!("GET {path} HTTP/1.1\r\n\r\n"));
+        raw.answer()
+    };
+    for (path, name, kind, encoding) in files {
+        let answer = ask(&format!("{path}?token={token}"));
+        let (head, content) = answer.split_once("\r\n\r\n").expect("a head");
+        let header = |name: &str| {
+            let value = |line: &'_ str| line.strip_prefix(&format!("{name}: ")).map(str::to_owned);
+            head.lines().find_map(value)
+        };
+        assert!(head.starts_with("HTTP/1.1 200 OK\r\n"), "{head}");
+        assert_eq!(content, format!("this is {name}"));
+        assert_eq!(header("Content-Length"), Some(content.len().to_string()));
+        assert_eq!(header("Content-Type").as_deref(), Some(kind));
+        assert_eq!(header("Content-Encoding").as_deref(), encoding);
+        assert_eq!(header("Cache-Control").as_deref(), Some("no-store"));
+        assert_eq!(header("Referrer-Policy").as_deref(), Some("no-referrer"));
+        let policy = header("Content-Security-Policy").expect("one");
+        assert!(
+            policy
+                .starts_with("default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self';"),
+            "{policy}"
+        );
+        assert!(ask(path).starts_with("HTTP/1.1 401 ") && ask(path).ends_with("\r\n\r\n"));
+    }
+    for other in [
+        "/index.html",
+        "/../viewers-key.pem",
+        "/watch/1",
+        "/seamwright.js.gz",
+    ] {
+        let answer = ask(&format!("{other}?token={token}"));
+        assert!(
+            answer.starts_with("HTTP/1.1 404 ") && answer.ends_with("\r\n\r\n"),
+            "{other}: {answer}"
+        );
+    }
+    assert_eq!(server.told().link(), Some(format!("https://{at}/?token={token}")));
+    drop(server);
+
+    let mut bench = Bench::new();
+    let server = service.start_with(HERE, folder.path());
+    let link = server.told().link().expect("there is a page");
+    bench.harness.state_mut().serve(server);
+    bench.pictures_in("serving-browsers", &[Language::English], |bench| {
+        bench.open(Page::Settings)
+    });
+    assert!(bench.says(&link));
+
+    // Without a page that is said.
+    let server = service.start(HERE);
+    let mut raw = service.raw(server.told().address);
+    raw.send(&format!("GET /?token={token} HTTP/1.1\r\n\r\n"));
+    let answer = raw.answer();
+    assert!(
+        answer.starts_with("HTTP/1.1 404 ") && answer.contains("`cargo xtask browser` makes it"),
+        "{answer}"
+    );
+    assert_eq!(server.told().link(), None);
+}
+
+#[test]
 fn what_a_viewer_sends_ends_its_connection_and_does_nothing_to_the_job() {
     let service = Service::new();
     let mut bench = Bench::new();
@@ -201,7 +291,7 @@ fn a_viewer_that_comes_late_sees_what_is_now_and_one_that_loses_the_screen_says_
     assert!((0..SIDES).all(|side| live.pictures[side].is_some()));
     assert!(!live.signals.is_empty());
 
-    let viewer = Viewer::new(service.place(at), Settings::default());
+    let viewer = connection::viewer(service.place(at), Settings::default());
     let mut viewer = drawn(viewer);
     bench.until("a viewer is drawn", |_| {
         viewer.step();

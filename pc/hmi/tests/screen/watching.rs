@@ -1,24 +1,29 @@
 //! Viewers, as their connections are.
 
-use hmi::screen::Page;
+use hmi::connection::{Connection, Place};
+use hmi::screen;
 use hmi::serving::Server;
 use hmi::serving::identity::Identity;
+use hmi::serving::page::Page;
 use hmi::serving::token::Token;
-use hmi::viewing::connection::{Connection, News, Place};
 use hmi::viewing::watched::Watched;
 use hmi::viewing::wire::{Message, PATH};
+use hmi::viewing::{Connection as _, News};
+use rcgen::{KeyPair, PublicKeyData};
 use rustls::crypto::ring;
 use rustls::pki_types::pem::PemObject;
 use rustls::pki_types::{CertificateDer, ServerName};
 use rustls::{ClientConfig, ClientConnection, RootCertStore, StreamOwned};
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpStream};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tungstenite::WebSocket;
 use tungstenite::protocol::Role;
 
+/// Environment variable with the folder of the page for browsers.
+const BROWSER_VARIABLE: &str = "SEAMWRIGHT_BROWSER";
 /// Longest wait for anything.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// Any port that is free, here.
@@ -42,7 +47,27 @@ impl Service {
     }
 
     pub fn start(&self, address: SocketAddr) -> Server {
-        Server::start(address, &self.identity, &self.token).expect("it serves")
+        Server::start(address, &self.identity, &self.token, None).expect("it serves")
+    }
+
+    /// The same, with what `cargo xtask browser` has made.
+    pub fn start_with_page(&self, address: SocketAddr) -> Server {
+        let folder =
+            std::env::var_os(BROWSER_VARIABLE).expect("cargo xtask test --browser says where the page is");
+        self.start_with(address, Path::new(&folder))
+    }
+
+    /// The same, with the page in `folder`.
+    pub fn start_with(&self, address: SocketAddr, folder: &Path) -> Server {
+        let page = Page::read(folder, &self.token).expect("a page");
+        Server::start(address, &self.identity, &self.token, Some(page)).expect("it serves")
+    }
+
+    /// Public key of the certificate, in DER.
+    pub fn public_key(&self) -> Vec<u8> {
+        let key = std::fs::read_to_string(self.file("key")).expect("a key");
+        let key = KeyPair::from_pem(&key).expect("a key");
+        key.subject_public_key_info()
     }
 
     pub fn place(&self, address: SocketAddr) -> Place {
@@ -53,18 +78,19 @@ impl Service {
         }
     }
 
-    fn certificate(&self) -> PathBuf {
+    /// The file with `part` in its name.
+    fn file(&self, part: &str) -> PathBuf {
         let files = std::fs::read_dir(self.folder.path()).expect("a folder");
         let mut files = files.map(|file| file.expect("a file").path());
         files
-            .find(|file| file.to_string_lossy().contains("certificate"))
-            .expect("a certificate")
+            .find(|file| file.to_string_lossy().contains(part))
+            .expect("a file")
     }
 
     /// A connection by TLS alone.
     pub fn raw(&self, address: SocketAddr) -> Raw {
         let mut roots = RootCertStore::empty();
-        let certificate = CertificateDer::from_pem_file(self.certificate()).expect("a certificate");
+        let certificate = CertificateDer::from_pem_file(self.file("certificate")).expect("a certificate");
         roots.add(certificate).expect("trusted");
         let config = ClientConfig::builder_with_provider(Arc::new(ring::default_provider()))
             .with_safe_default_protocol_versions()
@@ -159,8 +185,7 @@ impl Watcher {
     }
 
     pub fn turn(&mut self) {
-        let news: Vec<News> = self.connection.news().collect();
-        for news in news {
+        for news in self.connection.news() {
             match news {
                 News::Connected => {
                     self.watched.reconnected();
@@ -210,4 +235,9 @@ impl Watcher {
 }
 
 /// The pages that a viewer has not.
-pub const COMMANDING: [Page; 4] = [Page::SetUp, Page::Teach, Page::Welds, Page::Parameters];
+pub const COMMANDING: [screen::Page; 4] = [
+    screen::Page::SetUp,
+    screen::Page::Teach,
+    screen::Page::Welds,
+    screen::Page::Parameters,
+];

@@ -1,42 +1,22 @@
 //! The page of the job: program, path, cameras, deviations, figures, controls.
 
-mod cameras;
 mod controls;
-mod deviations;
-mod figures;
 mod loading;
-mod program;
-mod way;
 
-use super::{View, bare, nothing, title};
-
-use crate::seen::Seen;
+use super::{View, bare, title};
 use crate::station::{Action, Station};
-pub(super) use deviations::line;
-use eframe::egui::{self, Frame, Ui};
+use eframe::egui::{self, Ui};
 use std::time::Duration;
+use view::screen::run::Sight;
 
 /// Width of the controls \[points\].
 const CONTROLS: f32 = 216.0;
-/// Width of the program \[points\].
-const PROGRAM: f32 = 262.0;
-/// Height of the figures \[points\].
-const FIGURES: f32 = 64.0;
-/// Part of the height that path and program take, above cameras and deviations.
-const UPPER: f32 = 0.53;
 
 /// What the page remembers between two frames.
 #[derive(Default)]
 pub(super) struct RunPage {
     sight: Sight,
     over: Over,
-}
-
-/// The same, of what is only looked at.
-#[derive(Default)]
-pub(super) struct Sight {
-    way: way::Standpoint,
-    cameras: cameras::Textures,
 }
 
 /// What is open over the page.
@@ -79,44 +59,4 @@ fn begin_at(station: &mut Station, line: u32, now: Duration) {
     let again = loaded.drawn.from_line == Some(line);
     let program = loaded.program_file.clone();
     station.load(program, (!again).then_some(line));
-}
-
-impl Sight {
-    /// Shows everything but the controls; a line of the program that is tapped, from 1.
-    pub fn show(&mut self, ui: &mut Ui, view: &View, seen: &Seen) -> Option<u32> {
-        bare(egui::Panel::top("figures"))
-            .exact_size(FIGURES)
-            .show(ui, |ui| figures::show(ui, view, seen));
-        if seen.program.is_some_and(|(drawn, _)| drawn.is_tracked) {
-            let height = ui.available_height() * (1.0 - UPPER);
-            bare(egui::Panel::bottom("seam"))
-                .exact_size(height)
-                .show(ui, |ui| {
-                    bare(egui::Panel::right("cameras"))
-                        .exact_size(height * 1.5)
-                        .resizable(false)
-                        .show(ui, |ui| {
-                            self.cameras.show(ui, view, seen.live);
-                        });
-                    deviations::show(ui, view, seen);
-                });
-        }
-        let tapped = bare(egui::Panel::left("program"))
-            .exact_size(PROGRAM)
-            .resizable(false)
-            .show(ui, |ui| program::show(ui, view, seen))
-            .inner;
-        Frame::new()
-            .inner_margin(8)
-            .show(ui, |ui| self.way.show(ui, view, seen));
-        tapped
-    }
-}
-
-/// A frame with rounded corners, as wide as there is room.
-fn card(view: &View) -> Frame {
-    Frame::new()
-        .fill(view.theme.card)
-        .corner_radius(6)
-        .inner_margin(8)
 }

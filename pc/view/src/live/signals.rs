@@ -148,11 +148,13 @@ pub struct Signals {
 }
 
 impl Signals {
-    pub(crate) fn motion(&mut self, sample: &MotionSample) {
+    /// Takes a tick of the motion board.
+    pub fn motion(&mut self, sample: &MotionSample) {
         keep(&mut self.motion, *sample);
     }
 
-    pub(crate) fn tracker(&mut self, sample: &TrackerSample) {
+    /// Takes a tick of the tracker board.
+    pub fn tracker(&mut self, sample: &TrackerSample) {
         keep(&mut self.tracker, *sample);
         if let Some(motion) = self.motion.back() {
             let ahead = sample.time_us as f64 - motion.time_us as f64;
@@ -162,12 +164,12 @@ impl Signals {
     }
 
     /// How far the tracker board's clock is ahead of the motion board's \[µs\], as far as that is known.
-    pub(crate) fn tracker_ahead_us(&self) -> Option<f64> {
+    pub fn tracker_ahead_us(&self) -> Option<f64> {
         self.tracker_ahead_us
     }
 
     /// See [`Self::tracker_ahead_us`].
-    pub(crate) fn set_tracker_ahead_us(&mut self, ahead_us: Option<f64>) {
+    pub fn set_tracker_ahead_us(&mut self, ahead_us: Option<f64>) {
         self.tracker_ahead_us = ahead_us;
     }
 
@@ -205,7 +207,7 @@ impl Signals {
     }
 
     /// The newest `window_s` of both boards, oldest first.
-    pub(crate) fn newest(&self, window_s: f64) -> (Vec<MotionSample>, Vec<TrackerSample>) {
+    pub fn newest(&self, window_s: f64) -> (Vec<MotionSample>, Vec<TrackerSample>) {
         (
             newest(&self.motion, window_s, |sample| sample.time_us)
                 .copied()

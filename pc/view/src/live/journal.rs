@@ -2,8 +2,7 @@
 
 use crate::access::Event;
 use config::parameters::Change;
-use host_link::events::{Phase, Question};
-use job::JobError;
+use host_link::events::{Phase, Question, STOPPED};
 use serde::{Deserialize, Serialize};
 use shared::protocol::Identity;
 use shared::state::{Fault, TrackerFault};
@@ -35,6 +34,19 @@ pub struct Entry {
     pub what: What,
     /// The operator has taken note of it.
     pub acknowledged: bool,
+}
+
+/// An entry of a day before, or of a screen before.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Earlier {
+    /// Wall time after RFC 3339.
+    pub time: String,
+    /// How much it mattered.
+    pub severity: Severity,
+    /// The level that somebody at the screen had.
+    pub level: String,
+    /// What, in English.
+    pub text: String,
 }
 
 /// What happened.
@@ -107,49 +119,49 @@ impl Journal {
     }
 
     /// An entry that another screen has put on record.
-    pub(crate) fn append(&mut self, entry: Entry) {
+    pub fn append(&mut self, entry: Entry) {
         keep(&mut self.entries, entry);
         self.added += 1;
     }
 
     /// How many entries there ever were.
-    pub(crate) fn added(&self) -> u64 {
+    pub fn added(&self) -> u64 {
         self.added
     }
 
     /// How often open alarms were acknowledged.
-    pub(crate) fn acknowledged(&self) -> u64 {
+    pub fn acknowledged(&self) -> u64 {
         self.acknowledged
     }
 
     /// Those that came after the first `added`, as far as they are kept, oldest first.
-    pub(crate) fn since(&self, added: u64) -> impl Iterator<Item = &Entry> {
+    pub fn since(&self, added: u64) -> impl Iterator<Item = &Entry> {
         let new = usize::try_from(self.added - added.min(self.added)).unwrap_or(usize::MAX);
         self.entries.range(self.entries.len().saturating_sub(new)..)
     }
 
     /// What is to be put on record, oldest first; once.
-    pub(crate) fn take_unrecorded(&mut self) -> VecDeque<Entry> {
+    pub fn take_unrecorded(&mut self) -> VecDeque<Entry> {
         std::mem::take(&mut self.unrecorded)
     }
 
     /// Another access level or PIN, or none.
-    pub(crate) fn access(&mut self, at: Duration, event: Event) {
+    pub fn access(&mut self, at: Duration, event: Event) {
         self.add(at, Severity::Note, What::Access(event));
     }
 
     /// The record cannot be written.
-    pub(crate) fn record_unwritten(&mut self, at: Duration, error: &str) {
+    pub fn record_unwritten(&mut self, at: Duration, error: &str) {
         self.add(at, Severity::Note, What::RecordUnwritten(error.to_owned()));
     }
 
     /// The settings of the screen cannot be read.
-    pub(crate) fn settings_unread(&mut self, at: Duration, error: &str) {
+    pub fn settings_unread(&mut self, at: Duration, error: &str) {
         self.add(at, Severity::Alarm, What::SettingsUnread(error.to_owned()));
     }
 
     /// The settings of the screen cannot be written.
-    pub(crate) fn settings_unwritten(&mut self, at: Duration, error: &str) {
+    pub fn settings_unwritten(&mut self, at: Duration, error: &str) {
         self.add(at, Severity::Alarm, What::SettingsUnwritten(error.to_owned()));
     }
 
@@ -168,7 +180,7 @@ impl Journal {
     }
 
     /// Something in words of the job or of the program, in English.
-    pub(crate) fn message(&mut self, at: Duration, text: &str) {
+    pub fn message(&mut self, at: Duration, text: &str) {
         self.add(at, Severity::Note, What::Said(text.to_owned()));
     }
 
@@ -205,7 +217,7 @@ impl Journal {
     pub(super) fn end(&mut self, at: Duration, error: Option<&str>) {
         match error {
             None => self.add(at, Severity::Note, What::Finished),
-            Some(error) if error == JobError::Interrupted.to_string() => {
+            Some(error) if error == STOPPED => {
                 self.add(at, Severity::Alarm, What::Stopped);
             }
             // The job's sentence ends with the fault's, which is told already.

@@ -59,11 +59,7 @@ pub(super) fn show(ui: &mut Ui, view: &View, seen: &Seen) {
 }
 
 /// The deviation of a slide along the work \[µm\]: U solid, V dashed.
-pub(in crate::screen) fn line(
-    name: impl Into<String>,
-    deviations: &Deviations,
-    slide: usize,
-) -> Line<'static> {
+pub fn line(name: impl Into<String>, deviations: &Deviations, slide: usize) -> Line<'static> {
     let ends = deviations
         .bins()
         .flat_map(|(at, bin)| [bin.least[slide], bin.largest[slide]].map(|value| [at, value * UM]));

@@ -33,7 +33,7 @@ const COLOURS: [Color32; MOST] = [
 ];
 
 /// What the page remembers.
-pub(super) struct PlotPage {
+pub struct PlotPage {
     chosen: Vec<Signal>,
     window_s: f64,
     /// What was there when it was frozen.
@@ -68,6 +68,7 @@ impl PlotPage {
         }
     }
 
+    /// Shows it. Curves can be exported into `folder`; without one there is no button for that.
     pub fn show(&mut self, ui: &mut Ui, view: &View, signals: &Signals, folder: Option<&Path>) {
         bare(egui::Panel::left("signals"))
             .exact_size(LIST)

@@ -59,13 +59,7 @@ impl Page {
 }
 
 /// A button for each of `pages`; the one that is tapped.
-pub(super) fn rail(
-    ui: &mut Ui,
-    view: &View,
-    pages: &[Page],
-    shown: Page,
-    open_alarms: usize,
-) -> Option<Page> {
+pub fn rail(ui: &mut Ui, view: &View, pages: &[Page], shown: Page, open_alarms: usize) -> Option<Page> {
     let mut tapped = None;
     for page in pages {
         let mut name = view.words.say(page.name()).to_owned();
@@ -83,7 +77,7 @@ pub(super) fn rail(
 }
 
 /// The one of `pages` whose number is pressed with Ctrl.
-pub(super) fn by_key(ui: &Ui, pages: &[Page]) -> Option<Page> {
+pub fn by_key(ui: &Ui, pages: &[Page]) -> Option<Page> {
     let numbers = [
         Key::Num1,
         Key::Num2,

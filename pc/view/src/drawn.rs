@@ -111,7 +111,7 @@ mod pose {
 
 impl Drawn {
     /// The same without its lines.
-    pub(crate) fn without_lines(&self) -> Self {
+    pub fn without_lines(&self) -> Self {
         Self {
             name: self.name.clone(),
             from_line: self.from_line,

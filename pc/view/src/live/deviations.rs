@@ -147,7 +147,7 @@ impl Deviations {
     }
 
     /// What has changed since `before`, if anything has.
-    pub(crate) fn since(&self, before: &Self) -> Option<Changed> {
+    pub fn since(&self, before: &Self) -> Option<Changed> {
         let is_same_step = self.step_mm.total_cmp(&before.step_mm).is_eq();
         let known = if is_same_step { &before.bins[..] } else { &[] };
         let numbered = (0..).zip(&self.bins);
@@ -165,7 +165,7 @@ impl Deviations {
     }
 
     /// Takes what has changed; bins beyond those that are kept are none.
-    pub(crate) fn follow(&mut self, changed: &Changed) {
+    pub fn follow(&mut self, changed: &Changed) {
         if self.step_mm.total_cmp(&changed.step_mm).is_ne() {
             (self.step_mm, self.bins) = (changed.step_mm, Vec::new());
         }

@@ -1,11 +1,11 @@
 //! Colours. What they say is always said in words or shapes too.
 
-use super::Look;
+use crate::look::Look;
 use eframe::egui::{Color32, Context, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Visuals};
 
 /// Colours of the screen.
 #[derive(Clone, Debug)]
-pub(super) struct Theme {
+pub struct Theme {
     visuals: Visuals,
     /// Letters that matter less.
     pub faint: Color32,
@@ -24,6 +24,7 @@ pub(super) struct Theme {
 }
 
 impl Theme {
+    /// The colours of `look`.
     pub fn of(look: &Look) -> Self {
         let mut visuals = Visuals::dark();
         let (back, card, letters, faint) = if look.high_contrast {
@@ -87,6 +88,7 @@ impl Theme {
         }
     }
 
+    /// Has everything drawn in them.
     pub fn apply(&self, ctx: &Context) {
         ctx.set_visuals(self.visuals.clone());
         ctx.all_styles_mut(|style| {

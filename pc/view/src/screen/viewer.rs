@@ -1,16 +1,22 @@
 //! A screen that watches another one: its pages without controls.
 
-use super::{BAR, FRAME, Page, RAIL, View, alarms, bar, bare, pages, plot, run, scroll, settings};
-use crate::screen::theme::Theme;
-use crate::settings::{Look, Settings};
+use super::theme::Theme;
+use super::{BAR, FRAME, Page, RAIL, View, alarms, bar, bare, look, pages, plot, run, scroll};
+use crate::look::Look;
 use crate::texts::Text;
-use crate::viewing::connection::{Connection, News, Place};
 use crate::viewing::watched::{SILENCE, Watched};
-use eframe::egui::{self, Align, Frame, Label, Layout, RichText, Ui, Visuals};
-use std::time::{Duration, Instant};
+use crate::viewing::{Connection, News};
+use eframe::egui::{self, Align, Frame, Label, Layout, RichText, Ui, Vec2, Visuals};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Pages that make sense for who commands nothing.
 const PAGES: [Page; 4] = [Page::Run, Page::Plot, Page::Alarms, Page::Settings];
+
+/// A window that is smaller than this shows everything smaller \[points\].
+const LEAST: Vec2 = Vec2::new(1000.0, 640.0);
+/// By how much that changes at least.
+const STEP: f32 = 0.01;
 
 /// See the module.
 pub struct Viewer {
@@ -20,16 +26,21 @@ pub struct Viewer {
     pub look: Look,
     /// The screen that is watched.
     address: String,
-    connection: Connection,
+    connection: Box<dyn Connection>,
     /// Why there is no connection; none where there is one.
     lost: Option<Lost>,
     page: Page,
     run: run::Sight,
     plot: plot::PlotPage,
-    settings: Settings,
+    keep: Box<Keep>,
     kept: Look,
+    /// How much smaller everything is than the look says, so that it fits.
+    fit: f32,
     began: Instant,
 }
+
+/// Keeps a look for the next time; or a sentence why not.
+type Keep = dyn FnMut(&Look) -> Result<(), String>;
 
 /// Why there is no connection.
 enum Lost {
@@ -38,20 +49,25 @@ enum Lost {
 }
 
 impl Viewer {
-    /// A viewer of `place`, with what is kept in `settings`.
-    pub fn new(place: Place, settings: Settings) -> Self {
-        let look = settings.look.clone();
+    /// A viewer of the screen at `address`, which `connection` tells of. A `look` that is changed is given to `keep`.
+    pub fn new(
+        address: String,
+        connection: Box<dyn Connection>,
+        look: Look,
+        keep: impl FnMut(&Look) -> Result<(), String> + 'static,
+    ) -> Self {
         Self {
             watched: Watched::default(),
             look: look.clone(),
-            address: place.address.clone(),
-            connection: Connection::open(place),
+            address,
+            connection,
             lost: Some(Lost::NotYet),
             page: Page::default(),
             run: run::Sight::default(),
             plot: plot::PlotPage::default(),
-            settings,
+            keep: Box::new(keep),
             kept: look,
+            fit: 1.0,
             began: Instant::now(),
         }
     }
@@ -59,6 +75,11 @@ impl Viewer {
     /// Brings `page` in sight.
     pub fn open(&mut self, page: Page) {
         self.page = page;
+    }
+
+    /// Whether there is a connection.
+    pub fn is_connected(&self) -> bool {
+        self.lost.is_none()
     }
 
     /// The viewer's clock.
@@ -84,9 +105,14 @@ impl Viewer {
 
     fn show(&mut self, ui: &mut Ui) {
         let theme = Theme::of(&self.look);
+        self.fit(ui);
+        let fitted = Look {
+            zoom: self.look.zoom * self.fit,
+            ..self.look.clone()
+        };
         let view = View {
             no_program: Text::NoProgramThere,
-            ..View::of(ui, &self.look, &theme, self.now())
+            ..View::of(ui, &fitted, &theme, self.now())
         };
         if let Some(page) = pages::by_key(ui, &PAGES) {
             self.open(page);
@@ -109,10 +135,18 @@ impl Viewer {
             .show(ui, |ui| self.page(ui, &view));
         if !ui.input(|input| input.pointer.any_down()) && self.look != self.kept {
             self.kept = self.look.clone();
-            if let Err(error) = self.settings.write(&self.look, self.settings.access.pins()) {
-                let error = config::sentence(error.as_ref());
+            if let Err(error) = (self.keep)(&self.look) {
                 self.watched.live.journal.settings_unwritten(view.now, &error);
             }
+        }
+    }
+
+    /// Has everything be as much smaller as the window asks for.
+    fn fit(&mut self, ui: &Ui) {
+        let window = ui.ctx().content_rect().size() * ui.ctx().zoom_factor();
+        let fit = (window / LEAST).min_elem().min(1.0);
+        if (fit - self.fit).abs() > STEP {
+            self.fit = fit;
         }
     }
 
@@ -126,11 +160,11 @@ impl Viewer {
             }
             Page::Settings => {
                 scroll().show(ui, |ui| {
-                    settings::appearance(ui, view, &mut self.look);
+                    look::appearance(ui, view, &mut self.look);
                     ui.add_space(12.0);
                     let hint = view.words.with(Text::WatchingHint, &[&self.address]);
                     ui.add(Label::new(hint).wrap());
-                    settings::footer(ui, view, Text::WatchingKeys);
+                    look::footer(ui, view, Text::WatchingKeys);
                 });
             }
             // Nothing has come yet; the bar says why.

@@ -1,7 +1,9 @@
 //! The connection of a viewer: made again whenever it is lost, on a thread of its own.
 
-use super::wire::{LARGEST, Message, PATH};
+use crate::settings::Settings;
 use crate::sockets::{fingerprint, is_wait};
+use crate::viewing::wire::{LARGEST, Message, PATH};
+use crate::viewing::{self, News};
 use rustls::client::WebPkiServerVerifier;
 use rustls::client::danger::{HandshakeSignatureValid, ServerCertVerified, ServerCertVerifier};
 use rustls::crypto::{CryptoProvider, ring, verify_tls12_signature, verify_tls13_signature};
@@ -11,11 +13,13 @@ use rustls::{
 };
 use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, TryIter, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{ClientRequestBuilder, Error, HandshakeError, WebSocket};
+use view::look::Look;
+use view::screen::Viewer;
 
 /// Longest wait for a connection, and for each step of it.
 const CONNECTING: Duration = Duration::from_secs(2);
@@ -39,15 +43,14 @@ pub struct Place {
     pub fingerprint: Option<String>,
 }
 
-/// What came.
-#[derive(Debug)]
-pub enum News {
-    /// There is a connection.
-    Connected,
-    /// A message.
-    Message(Box<Message>),
-    /// There is none any more, or none yet, and why.
-    Lost(String),
+/// A screen that watches `place`, with what is kept in `settings`.
+pub fn viewer(place: Place, settings: Settings) -> Viewer {
+    let (address, look) = (place.address.clone(), settings.look.clone());
+    let keep = move |look: &Look| {
+        let written = settings.write(look, settings.access.pins());
+        written.map_err(|error| config::sentence(error.as_ref()))
+    };
+    Viewer::new(address, Box::new(Connection::open(place)), look, keep)
 }
 
 /// See the module.
@@ -66,10 +69,11 @@ impl Connection {
         std::thread::spawn(move || keep(&place, &sender, &stopped));
         Self { news, stop }
     }
+}
 
-    /// What has come since it was asked last.
-    pub fn news(&self) -> TryIter<'_, News> {
-        self.news.try_iter()
+impl viewing::Connection for Connection {
+    fn news(&mut self) -> Vec<News> {
+        self.news.try_iter().collect()
     }
 }
 

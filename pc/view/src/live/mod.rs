@@ -5,7 +5,7 @@ mod journal;
 mod signals;
 
 pub use deviations::{Bin, Changed, Deviations};
-pub use journal::{Entry, Journal, Severity, What};
+pub use journal::{Earlier, Entry, Journal, Severity, What};
 pub use signals::{SIGNALS, Signal, Signals, Unit};
 
 use cam::along::Along;
@@ -126,12 +126,12 @@ impl Live {
     }
 
     /// When a board was heard last, by the screen's clock.
-    pub(crate) fn heard(&self) -> Option<Duration> {
+    pub fn heard(&self) -> Option<Duration> {
         self.heard
     }
 
     /// A board was heard last at `heard`, by the screen's clock.
-    pub(crate) fn set_heard(&mut self, heard: Option<Duration>) {
+    pub fn set_heard(&mut self, heard: Option<Duration>) {
         self.heard = heard;
     }
 

@@ -383,6 +383,8 @@ texts! {
     Served: "Viewers", "观看者", "Zuschauer";
     ServedAt: "Address", "地址", "Adresse";
     ServedToken: "Token", "令牌", "Token";
+    ServedPage: "In a browser", "浏览器", "Im Browser";
+    NoPageServed: "there is no page for browsers: cargo xtask browser makes it", "没有浏览器页面：用 cargo xtask browser 生成", "es gibt keine Seite für Browser: cargo xtask browser macht sie";
     ServedFingerprint: "Certificate, SHA-256", "证书 SHA-256", "Zertifikat, SHA-256";
     ServedTo: "{} of {} watch", "正在观看：{}/{}", "{} von {} sehen zu";
     NotServed: "nobody can watch: opened without --serve", "无法观看：启动时未用 --serve", "niemand kann zusehen: ohne --serve geöffnet";
