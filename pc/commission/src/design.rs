@@ -2,11 +2,12 @@
 
 use crate::Complex;
 use crate::controller::{filters, pid};
+use crate::four_digits;
 use crate::lag::Lag;
 use crate::margins::Margins;
 use crate::response::{Line, Response};
 use shared::control::{MotorConfig, NOTCHES, NotchConfig};
-use shared::motion::Chirp;
+use shared::motion::{Chirp, check_coupling, check_gains};
 use shared::parameter::ParameterError;
 use thiserror::Error;
 
@@ -69,6 +70,8 @@ pub struct Loop {
     pub before: Margins,
     /// Gain and delay of the drive.
     pub lag: Lag,
+    /// What a machine file may not have, if that and not the margins keeps the gain from being higher.
+    pub held: Option<ParameterError>,
 }
 
 /// Why no loop was designed.
@@ -85,13 +88,14 @@ pub enum NoDesign {
     Parameter(#[from] ParameterError),
 }
 
-/// The loop with the highest proportional gain that keeps the margins; the integral and derivative gain go with it, and
-/// notches are added where they raise it.
+/// The loop of the motor `name` with the highest proportional gain that keeps the margins and that a machine file may have; the
+/// integral and derivative gain go with it, and notches are added where they raise it.
 ///
 /// # Errors
 /// There is none.
 pub fn design(
     response: &Response,
+    name: &str,
     motor: &MotorConfig,
     requirements: &Requirements,
 ) -> Result<Loop, NoDesign> {
@@ -100,11 +104,14 @@ pub fn design(
     // Commands are those of a drive whose gain is right from here on.
     let mut bare = motor.clone();
     bare.notches.clear();
-    bare.velocity_at_10v = motor.velocity_at_10v * lag.gain;
+    bare.velocity_at_10v = four_digits(motor.velocity_at_10v * lag.gain);
+    bare.velocity_feed_forward = 1.0;
+    bare.acceleration_feed_forward_s = four_digits(lag.delay_s.max(0.0));
     let response = response.of_gain(1.0 / lag.gain);
-    let mut best = with_highest_gain(&response, &bare, requirements)?;
+    let highest = |motor: &MotorConfig| with_highest_gain(&response, name, motor, requirements);
+    let mut best = highest(&bare)?;
     for _ in 0..NOTCHES {
-        let base = best.as_ref().map_or(&bare, |(motor, _)| motor).clone();
+        let base = best.as_ref().map_or(&bare, |best| &best.motor).clone();
         let Some((_, resonance)) = Resonance::highest(&response, &base)? else {
             break;
         };
@@ -115,18 +122,19 @@ pub fn design(
             if with.notches.push(notch).is_err() {
                 continue;
             }
-            let found = with_highest_gain(&response, &with, requirements)?;
-            better = higher(better, found);
+            better = higher(better, highest(&with)?);
         }
-        let gain = |found: &Option<(MotorConfig, Margins)>| found.as_ref().map_or(0.0, |(motor, _)| motor.kp);
+        let gain = |found: &Option<Highest>| found.as_ref().map_or(0.0, |found| found.motor.kp);
         if gain(&better) < WORTH * gain(&best) {
             break;
         }
         best = better;
     }
-    let (mut motor, margins) = best.ok_or(NoDesign::NoGain)?;
-    motor.velocity_feed_forward = 1.0;
-    motor.acceleration_feed_forward_s = lag.delay_s.max(0.0);
+    let Highest {
+        mut motor,
+        margins,
+        held,
+    } = best.ok_or(NoDesign::NoGain)?;
     // No drive can be told more than its 10 V.
     motor.max_command = motor.max_command.min(motor.velocity_at_10v.abs());
     Ok(Loop {
@@ -134,6 +142,7 @@ pub fn design(
         margins,
         before,
         lag,
+        held,
     })
 }
 
@@ -168,12 +177,17 @@ impl Response {
     }
 }
 
-fn higher(
-    first: Option<(MotorConfig, Margins)>,
-    second: Option<(MotorConfig, Margins)>,
-) -> Option<(MotorConfig, Margins)> {
+/// A motor with the highest gain.
+struct Highest {
+    motor: MotorConfig,
+    margins: Margins,
+    /// See [`Loop::held`].
+    held: Option<ParameterError>,
+}
+
+fn higher(first: Option<Highest>, second: Option<Highest>) -> Option<Highest> {
     match (first, second) {
-        (Some(first), Some(second)) if second.0.kp > first.0.kp => Some(second),
+        (Some(first), Some(second)) if second.motor.kp > first.motor.kp => Some(second),
         (None, second) => second,
         (first, _) => first,
     }
@@ -231,23 +245,38 @@ fn number(hz: f64) -> usize {
     (hz / Chirp::LINE_HZ).round() as usize
 }
 
-/// The motor with the highest gain up to which the margins are kept.
+/// The motor `name` with the highest gain up to which the margins are kept and that a machine file may have.
 fn with_highest_gain(
     response: &Response,
+    name: &str,
     motor: &MotorConfig,
     requirements: &Requirements,
-) -> Result<Option<(MotorConfig, Margins)>, ParameterError> {
+) -> Result<Option<Highest>, ParameterError> {
     // All parts of the controller grow with the proportional gain.
     let shapes = open_loops(response, &motor.with_gain(1.0), requirements.coupling)?;
-    let mut best = None;
+    let mut best: Option<Highest> = None;
     let mut kp = LEAST_KP;
     while kp <= MOST_KP {
-        let margins = margins_of(&shapes, kp);
+        let motor = motor.with_gain(four_digits(kp));
+        let margins = margins_of(&shapes, motor.kp);
+        let kept = requirements.are_kept(&margins);
+        let may_be = check_gains(name, &motor)
+            .and_then(|()| check_coupling(four_digits(requirements.coupling * motor.kp), &motor));
         // With a small gain the integral part is fast against the loop.
-        match (requirements.are_kept(&margins), &best) {
-            (true, _) => best = Some((motor.with_gain(kp), margins)),
-            (false, Some(_)) => break,
-            (false, None) => {}
+        match (may_be, &mut best) {
+            (Ok(()), best) if kept => {
+                *best = Some(Highest {
+                    motor,
+                    margins,
+                    held: None,
+                });
+            }
+            (Err(error), Some(best)) if kept => {
+                best.held = Some(error);
+                break;
+            }
+            (_, Some(_)) => break,
+            (_, None) => {}
         }
         kp *= STEP;
     }
@@ -264,8 +293,8 @@ impl WithGain for MotorConfig {
         let factor = kp / self.kp;
         Self {
             kp,
-            ki: self.ki * factor,
-            kd: self.kd * factor,
+            ki: four_digits(self.ki * factor),
+            kd: four_digits(self.kd * factor),
             ..self.clone()
         }
     }
@@ -318,9 +347,9 @@ impl Resonance {
 
     fn notch(&self, damping: f64) -> NotchConfig {
         NotchConfig {
-            frequency_hz: self.hz,
+            frequency_hz: four_digits(self.hz),
             damping,
-            depth: (1.0 / self.prominence).max(LEAST_DEPTH),
+            depth: four_digits((1.0 / self.prominence).max(LEAST_DEPTH)),
         }
     }
 }

@@ -4,10 +4,9 @@ use crate::plan::{Planned, SETTLE_PERIODS, TRAVEL, TURNS_HZ, WAY, plan, plan_at_
 use shared::config::MotionConfig;
 use shared::control::GantryConfig;
 use shared::io::MOTOR_AXIS;
+use shared::motion::most_following_error_base;
 use shared::protocol::{CaptureSample, Excitation, Excited};
 
-/// Part of the acceleration of an axis that an excitation uses.
-const OF_ACCELERATION: f64 = 0.5;
 /// Part of its proportional gains with which a machine is measured.
 const SOFTENED: f64 = 0.25;
 /// Part of the skew that trips a gantry.
@@ -24,13 +23,20 @@ pub struct CapturedMotion {
     pub samples: Vec<CaptureSample>,
 }
 
-/// The machine with loops that are too slow to ring, whatever its gains are: in a loop that swings by itself nothing is measured.
+/// The machine with loops that are too slow to ring, whatever its gains are: in a loop that swings by itself nothing is measured. A
+/// motor trips where its drive is told as much as before, but not further from its place than an excitation may bring it.
 pub fn softened(machine: &MotionConfig) -> MotionConfig {
     let mut softened = machine.clone();
-    for motor in softened.motors.iter_mut().flatten() {
+    for (index, motor) in softened.motors.iter_mut().enumerate() {
+        let (Some(motor), Some(axis)) = (motor, &machine.axes[MOTOR_AXIS[index]]) else {
+            continue;
+        };
         motor.kp *= SOFTENED;
         motor.ki *= SOFTENED * SOFTENED;
         motor.kd = 0.0;
+        let most = most_following_error_base(motor, axis).min(TRAVEL);
+        let base = motor.following_error_base;
+        motor.following_error_base = (base / SOFTENED).min(most).max(base);
     }
     if let Some(gantry) = &mut softened.gantry {
         gantry.coupling *= SOFTENED;
@@ -49,8 +55,7 @@ pub fn excitations(machine: &MotionConfig, index: usize) -> Vec<Excitation> {
         (axis.travel_max - axis.travel_min) / 2.0 - 2.0 * TRAVEL
     });
     let way = WAY.min(room).max(0.0);
-    let full = acceleration;
-    let (speed, acceleration) = (OF_SPEED * speed, OF_ACCELERATION * acceleration);
+    let speed = OF_SPEED * speed;
     let turning = Excitation {
         motor: index as u8,
         excited: Excited::Reference,
@@ -79,7 +84,7 @@ pub fn excitations(machine: &MotionConfig, index: usize) -> Vec<Excitation> {
     on_the_way
         .chain([turning])
         .chain(at_rest)
-        .chain([shaken(swing(way.abs().max(TRAVEL), full, speed), way)])
+        .chain([shaken(swing(way.abs().max(TRAVEL), acceleration, speed), way)])
         .collect()
 }
 

@@ -9,7 +9,7 @@ use crate::refusal::{Measured, Refusal};
 use crate::response::{Capture, Line, NoResponse, Response};
 use shared::config::MotionConfig;
 use shared::control::{FrictionConfig, MotorConfig};
-use shared::io::MOTOR_AXIS;
+use shared::io::{MOTOR_AXIS, MOTOR_NAMES};
 use shared::kinematics::AXIS_UNIT;
 use shared::parameter::ParameterError;
 use shared::protocol::Excited;
@@ -77,7 +77,7 @@ impl Found {
         let designed = response
             .as_ref()
             .map_err(Clone::clone)
-            .map(|response| design(response, motor, &requirements));
+            .map(|response| design(response, MOTOR_NAMES[index], motor, &requirements));
         let found = designed.as_ref().ok().and_then(|designed| designed.as_ref().ok());
         let delay_s = found.map_or(0.0, |found| found.lag.delay_s);
         let friction = match &response {

@@ -53,3 +53,12 @@ fn spectrum(values: impl Iterator<Item = f64>) -> Vec<Complex> {
     Radix4::new(CAPTURE_TICKS, FftDirection::Forward).process(&mut values);
     values
 }
+
+/// What a machine file has of a value: what was measured is no more exact.
+pub(crate) fn four_digits(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let scale = 10_f64.powi(3 - value.abs().log10().floor() as i32);
+    (value * scale).round() / scale
+}

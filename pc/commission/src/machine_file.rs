@@ -3,6 +3,7 @@
 
 use crate::design::Loop;
 use crate::excitations::least_kp;
+use crate::four_digits;
 use shared::config::MotionConfig;
 use shared::control::{FrictionConfig, NotchConfig};
 use shared::io::MOTOR_NAMES;
@@ -149,13 +150,4 @@ fn table<const N: usize>(fields: [(&str, f64); N]) -> InlineTable {
         .into_iter()
         .map(|(key, value)| (key, Value::from(four_digits(value))))
         .collect()
-}
-
-/// What was measured is no more exact.
-fn four_digits(value: f64) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value;
-    }
-    let scale = 10_f64.powi(3 - value.abs().log10().floor() as i32);
-    (value * scale).round() / scale
 }

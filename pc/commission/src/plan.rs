@@ -1,14 +1,23 @@
-//! Which excitations a motor gets: four bands, so that low frequencies move it well above its noise and high ones stay inside what
-//! its drive accelerates, and all of them on its way, so that friction and play stay on one side; and one at rest, so small that
+//! Which excitations a motor gets: six bands, so that low frequencies move it well above its noise and high ones stay inside what
+//! its axis accelerates, and all of them on its way, so that friction and play stay on one side; and one at rest, so small that
 //! friction holds the motor: the mechanics behind a motor that is held swing at another frequency, and less damped.
 
 use shared::motion::{Chirp, Way};
 use shared::protocol::CAPTURE_TICKS;
 use std::f64::consts::TAU;
 
-/// Bands \[Hz\]; each goes beyond its ends, where a chirp has little power, by a tenth. The lowest line is left out: the way, whose
-/// speed is not quite even, is seen in it.
-const BANDS: [(f64, f64); 4] = [(4.0, 15.0), (15.0, 60.0), (60.0, 200.0), (200.0, 450.0)];
+/// Bands \[Hz\], and the part of the acceleration that each uses; each goes beyond its ends, where a chirp has little power, by a tenth.
+/// The lowest line is left out: the way, whose speed is not quite even, is seen in it. Low bands leave a part of the acceleration,
+/// for what the drive does with all of it is measured against them. High ones move the machine by some counts only: they use all of it, and are
+/// narrow, for the lower ones then need not keep to the amplitude that it leaves at the highest line, and fewer lines share it.
+const BANDS: [(f64, f64, f64); 6] = [
+    (4.0, 15.0, 0.5),
+    (15.0, 60.0, 0.5),
+    (60.0, 90.0, 1.0),
+    (90.0, 135.0, 1.0),
+    (135.0, 200.0, 1.0),
+    (200.0, 450.0, 1.0),
+];
 const BEYOND: f64 = 1.1;
 /// Amplitudes of the captures of a band, as parts of what is allowed: what depends on them is not the machine's response.
 const PARTS: [f64; 3] = [1.0, 0.7, 1.0];
@@ -64,10 +73,10 @@ pub fn way(length: f64) -> Way {
 
 /// The excitations of a motor that makes a way of this `length` (mm or °) and may move with this acceleration \[1/s²\].
 pub fn plan(length: f64, acceleration: f64) -> Vec<Planned> {
-    let band = |(from, to): (f64, f64)| {
+    let band = |(from, to, part): (f64, f64, f64)| {
         let (from_hz, to_hz) = (from / BEYOND, to * BEYOND);
         let most = (OF_SPEED * way(length).speed())
-            .min(acceleration / (TAU * to_hz))
+            .min(part * acceleration / (TAU * to_hz))
             .min(OF_TRAVEL * TRAVEL * TAU * from_hz);
         PARTS.map(|part| Planned {
             from_hz,

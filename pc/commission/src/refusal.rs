@@ -3,7 +3,7 @@
 use crate::controller::{filters, pid};
 use crate::design::{Loop, least_gain};
 use crate::friction::{left, over_time};
-use crate::plan::COUNTS_AT_REST;
+use crate::plan::{COUNTS_AT_REST, TURNS_HZ};
 use crate::response::Response;
 use crate::{Complex, spectrum};
 use shared::control::{FrictionConfig, MotorConfig};
@@ -22,6 +22,9 @@ const REACHED: f64 = 0.8;
 const OWN_SWING: f64 = 10.0;
 /// What a motor may cost the tool where it turns round \[mm\]: all that a spot may be beside its seam as machines are shipped.
 const MOST_LOST_MM: f64 = 0.05;
+/// Part of what a drive is told that may be lost where it turns round: gain and delay of the drive are not known much more exactly,
+/// and friction takes some hundredths.
+const MOST_LOST: f64 = 0.1;
 
 /// What is wrong with a motor, its drive or what it moves.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
@@ -42,6 +45,15 @@ pub enum Refusal {
     )]
     Lost {
         /// How far the tool would be off, in the loop with the margins and what feed-forward of friction does \[mm\].
+        lost_mm: f64,
+    },
+    /// Its grating goes less far than its drive is told.
+    #[error(
+        "friction or play: where it turns round {lost_mm:.3} mm of what its drive is told do not come to its grating (at most {MOST_LOST_MM} mm): \
+         look at bearings, gears and couplings, and at the scale's mount"
+    )]
+    Play {
+        /// How far the tool is off without the position loop \[mm\].
         lost_mm: f64,
     },
     /// Its mechanics swing at a low frequency.
@@ -111,6 +123,10 @@ impl Measured<'_> {
         let Some(designed) = self.designed else {
             return Ok(None);
         };
+        let lost_mm = self.undone(designed) * self.tool_mm;
+        if lost_mm > MOST_LOST_MM {
+            return Ok(Some(Refusal::Play { lost_mm }));
+        }
         let lost_mm = self.lost(response, designed)? * self.tool_mm;
         Ok((lost_mm > MOST_LOST_MM).then_some(Refusal::Lost { lost_mm }))
     }
@@ -143,6 +159,30 @@ impl Measured<'_> {
         // The loop takes some of what is asked for back.
         let asked = command * gain * TAU * hz;
         (asked > 0.0).then(|| position * (TAU * hz) * (TAU * hz) / asked)
+    }
+
+    /// How much less far than its drive is told the motor goes where it turns round (mm or °); 0 if that may be what is not known
+    /// of the drive. Behind play that is larger than its way, the grating hardly moves, and in the loop that costs little.
+    fn undone(&self, designed: &Loop) -> f64 {
+        if self.turning.len() != CAPTURE_TICKS {
+            return 0.0;
+        }
+        let line = (TURNS_HZ / Chirp::LINE_HZ).round() as usize;
+        let omega = TAU * TURNS_HZ;
+        let counts = spectrum(self.turning.iter().map(|sample| f64::from(sample.counts)))[line];
+        let codes = spectrum(self.turning.iter().map(|sample| DacCode(sample.command).ratio()))[line];
+        // So slow that the drive is a gain and a delay.
+        let drive = Complex::from_polar(
+            designed.lag.gain / omega,
+            -TAU / 4.0 - omega * designed.lag.delay_s,
+        );
+        let told = codes * self.motor.velocity_at_10v * drive;
+        let off = told - counts / self.motor.counts_per_unit;
+        if off.norm() > MOST_LOST * told.norm() {
+            amplitude(&off)
+        } else {
+            0.0
+        }
     }
 
     /// How far the motor would be off where it turns round as in the capture, in the loop with the margins and its feed-forward of friction (mm or °).

@@ -1,8 +1,9 @@
-//! The cross-coupling of a gantry beside the gains of its motors.
+//! The cross-coupling of a gantry beside the gains of its motors, and machines with softened loops.
 
-use commission::{Lag, Loop, Margins, rewrite_all};
+use commission::{Lag, Loop, Margins, TRAVEL, rewrite_all, softened};
 use config::machine::MachineFile;
 use shared::config::MotionConfig;
+use shared::motion::Machine;
 
 const X1: usize = 0;
 const X2: usize = 1;
@@ -26,6 +27,7 @@ fn with_gain(index: usize, kp: f64) -> Loop {
             gain: 1.0,
             delay_s: 0.0,
         },
+        held: None,
     }
 }
 
@@ -66,4 +68,38 @@ fn the_coupling_goes_with_the_lesser_gain_of_both_motors_whichever_is_written_fi
         "{written}"
     );
     assert!(rewrite_all("[motors.X1]\nkp = 120.0\n", &before, &[(X1, &x2)]).is_err());
+}
+
+/// With a quarter of its gain a drive is told as much where its motor is four times as far off.
+#[test]
+fn softened_machines_trip_later_but_no_further_than_an_excitation_goes_and_are_machines() {
+    for name in [
+        "dual-beam-gantry",
+        "pipe-welder",
+        "ac-head",
+        "wire-arc",
+        "stir-gantry",
+    ] {
+        let path = format!("{}/../../machines/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let mut before = MachineFile::read(path.as_ref()).expect("a machine").motion;
+        // The last is as much as the least travel allows.
+        for base in [0.1, 0.5, 1.0] {
+            let motors = before.motors.iter_mut().flatten();
+            motors.for_each(|motor| motor.following_error_base = base);
+            let softened = softened(&before);
+            if let Err(error) = Machine::build(&softened) {
+                panic!("{name}, {base}: {error}");
+            }
+            let largest = softened
+                .motors
+                .iter()
+                .flatten()
+                .map(|motor| motor.following_error_base);
+            assert_eq!(
+                largest.fold(0.0, f64::max),
+                (4.0 * base).min(TRAVEL),
+                "{name}, {base}"
+            );
+        }
+    }
 }

@@ -2,13 +2,14 @@
 //! by hand (mathematics 0.11), which knows nothing of captures.
 
 use commission::{
-    Capture, Complex, Loop, Margins, Measured, NoFriction, Planned, Refusal, Requirements, Response,
+    Capture, Complex, Line, Loop, Margins, Measured, NoFriction, Planned, Refusal, Requirements, Response,
     SETTLE_PERIODS, TURNS_HZ, WAY, design, friction, plan, plan_at_rest, rewrite, swing, way,
 };
 use plant::{ModeConfig, MotionPlant, MotorConfig as TrueMotor, PlantConfig};
 use plant_file::{PlantChoice, PlantFile};
 use shared::control::{MotorConfig, Pid, PidState, Setpoint};
 use shared::io::{DacCode, MOTOR_NAMES, MOTORS, MotionCommand, SLIDES};
+use shared::motion::{Chirp, check_coupling, check_gains};
 use shared::protocol::{CAPTURE_TICKS, CaptureSample};
 use shared::ticks::SERVO_PERIOD_S;
 use std::f64::consts::TAU;
@@ -171,8 +172,8 @@ fn true_margins(config: &TrueMotor, motor: &MotorConfig) -> Margins {
 fn found(index: usize, config: &TrueMotor, motor: &MotorConfig) -> (Response, Loop) {
     let captures = captures(index, config, motor);
     let response = Response::of(&captures, motor).unwrap_or_else(|error| panic!("{error}"));
-    let designed =
-        design(&response, motor, &Requirements::default()).unwrap_or_else(|error| panic!("{error}"));
+    let designed = design(&response, MOTOR_NAMES[index], motor, &Requirements::default())
+        .unwrap_or_else(|error| panic!("{error}"));
     (response, designed)
 }
 
@@ -209,7 +210,10 @@ fn assert_near(config: &TrueMotor, designed: &Loop) {
         "said {said:?}\ntrue {truth:?}\nkp {} notches {:?}",
         designed.motor.kp, designed.motor.notches
     );
-    assert!((truth.gain_db - said.gain_db).abs() < 1.5, "{truth:?} {said:?}");
+    // Where the open loop only just comes to the axis, far from -1, a margin may be there or not.
+    let far = 2.0 * Requirements::default().gain_db;
+    let off = truth.gain_db.min(far) - said.gain_db.min(far);
+    assert!(off.abs() < 1.5, "{truth:?} {said:?}");
     assert!(
         (truth.phase_deg - said.phase_deg).abs() < 8.0,
         "{truth:?} {said:?}"
@@ -252,6 +256,50 @@ fn resonances_get_notches_and_the_loop_keeps_its_margins() {
         println!("{frequency_hz} Hz:");
         assert_near(&config, &designed);
     }
+}
+
+/// A drive whose delay for slow commands, 6 ms, allows no more than 262 1/s in a machine file, with margins far above that.
+#[test]
+fn a_gain_that_no_machine_file_may_have_is_not_found() {
+    let line = |number: u32| {
+        let hz = Chirp::LINE_HZ * f64::from(number);
+        let s = Complex::new(0.0, TAU * hz);
+        Line {
+            hz,
+            gain: (-s * 0.0004).exp() * (1.0 + 0.0044 * s) / (1.0 + 0.01 * s) / s,
+            coherence: 1.0,
+        }
+    };
+    let response = Response {
+        lines: (2..=200).map(line).collect(),
+        believed: 1.0,
+        at_rest: Vec::new(),
+    };
+    let (_, motor) = shipped(Y);
+    let found = |coupling: f64| {
+        let requirements = Requirements {
+            coupling,
+            ..Requirements::default()
+        };
+        let found = design(&response, "Y", &motor, &requirements).expect("a loop");
+        println!("{} {:?}", found.motor.kp, found.held);
+        assert_eq!(check_gains("Y", &found.motor), Ok(()));
+        assert_eq!(check_coupling(coupling * found.motor.kp, &found.motor), Ok(()));
+        assert!(
+            found.margins.gain_db > Requirements::default().gain_db + 3.0,
+            "{found:?}"
+        );
+        let held = found.held.expect("the margins allow more");
+        (found.motor.kp, held.owner(), held.field())
+    };
+    let (alone, owner, field) = found(0.0);
+    assert_eq!((owner, field), (Some("Y"), Some("kp")));
+    let most = TAU / 4.0 / 0.006;
+    assert!((most / 1.06..1.02 * most).contains(&alone), "{alone}");
+    // Both motors of a gantry answer to a skew.
+    let (coupled, owner, field) = found(0.25);
+    assert_eq!((owner, field), (Some("gantry"), Some("coupling")));
+    assert!((most / 1.06..1.02 * most).contains(&(1.5 * coupled)), "{coupled}");
 }
 
 #[test]
@@ -301,6 +349,28 @@ fn gain_and_delay_are_those_of_drawn_machines() {
     }
 }
 
+/// Behind mechanics that swing at 59 and 62 Hz the gratings of axes with little acceleration hardly move above.
+#[test]
+fn most_lines_of_weak_axes_are_believed() {
+    const Z: usize = 3;
+    const B: usize = 5;
+    for (draw, machine, index, acceleration) in [
+        ("draw:usual:1012", "stir-gantry", Z, 200.0),
+        ("draw:poor:2004", MACHINE, B, 400.0),
+    ] {
+        let choice: PlantChoice = draw.parse().expect("a draw");
+        let plant = choice.of(machine).expect("a machine");
+        let config = plant.plant.motors[index].clone().expect("wired");
+        let motor = believed(&plant, index);
+        let response = Response::of(&captures_of(index, &config, &motor, acceleration), &motor);
+        println!(
+            "{draw}: {:?}",
+            response.as_ref().map(|response| response.believed)
+        );
+        assert!(response.is_ok(), "{draw}: {response:?}");
+    }
+}
+
 /// B of a drawn machine swings where it stands, unless its loop was designed for a motor that friction holds too.
 #[test]
 fn a_motor_that_friction_holds_does_not_swing() {
@@ -311,7 +381,7 @@ fn a_motor_that_friction_holds_does_not_swing() {
     let mut captures = captures(index, &config, &motor);
     let of = |captures: &[Capture]| {
         let response = Response::of(captures, &motor).expect("believed");
-        design(&response, &motor, &Requirements::default()).expect("a loop")
+        design(&response, MOTOR_NAMES[index], &motor, &Requirements::default()).expect("a loop")
     };
     let under_way = of(&captures);
     let rest = plan_at_rest(motor.counts_per_unit, 0.5 * config.drive.max_acceleration);
@@ -480,15 +550,16 @@ fn where_there_is_no_friction_none_is_found() {
     assert_eq!(found(&samples[..CAPTURE_TICKS / 2]), Err(NoFriction::Empty));
 }
 
-/// What is said of a motor that is measured as a machine is, with the shipped acceleration of its axis.
-fn refusal(index: usize, config: &TrueMotor, motor: &MotorConfig) -> Option<Refusal> {
+/// What is said of a motor that is measured as a machine is, with the shipped acceleration of its axis, and turns round over
+/// `amplitude` to either side.
+fn refusal(index: usize, config: &TrueMotor, motor: &MotorConfig, amplitude: f64) -> Option<Refusal> {
     let acceleration = if index < 4 { 1000.0 } else { 400.0 };
-    let captures = captures_of(index, config, motor, 0.5 * acceleration);
+    let captures = captures_of(index, config, motor, acceleration);
     let response = Response::of(&captures, motor).ok();
     let designed = response
         .as_ref()
-        .and_then(|response| design(response, motor, &Requirements::default()).ok());
-    let turning = turning(index, config, motor, 1.0);
+        .and_then(|response| design(response, MOTOR_NAMES[index], motor, &Requirements::default()).ok());
+    let turning = turning(index, config, motor, amplitude);
     let found = response.as_ref().zip(designed.as_ref());
     let friction =
         found.and_then(|(response, designed)| friction(response, &turning, motor, designed.lag.delay_s).ok());
@@ -516,20 +587,25 @@ fn what_cannot_be_commissioned_is_refused_for_what_is_wrong_with_it() {
         for index in [Y, 5] {
             let config = plant.plant.motors[index].clone().expect("wired");
             let motor = believed(&plant, index);
-            let refused = |spoil: &dyn Fn(&mut TrueMotor)| {
+            let over = |amplitude: f64, spoil: &dyn Fn(&mut TrueMotor)| {
                 let mut spoilt = config.clone();
                 spoil(&mut spoilt);
-                refusal(index, &spoilt, &motor)
+                refusal(index, &spoilt, &motor, amplitude)
             };
+            let refused = |spoil: &dyn Fn(&mut TrueMotor)| over(1.0, spoil);
             println!("{draw} {}", MOTOR_NAMES[index]);
             assert_eq!(refused(&|_| ()), None);
             let found = refused(&|motor| motor.drive.max_acceleration = 1.3 * motor.mechanics.friction);
             assert!(matches!(found, Some(Refusal::Acceleration { .. })), "{found:?}");
-            let found = refused(&|motor| motor.mechanics.backlash = 0.5);
-            assert!(
-                matches!(found, Some(Refusal::Lost { lost_mm }) if lost_mm < 0.5),
-                "{found:?}"
-            );
+            // Over less than its play it turns round as the motors of a gantry do.
+            for (play, amplitude) in [(0.3, 1.0), (0.8, 1.0), (0.5, 0.15)] {
+                let found = over(amplitude, &|motor| motor.mechanics.backlash = play);
+                assert!(
+                    matches!(found, Some(Refusal::Play { lost_mm }) if (0.3 * play..play).contains(&lost_mm)),
+                    "{play} over {amplitude}: {found:?}"
+                );
+            }
+            assert_eq!(over(0.15, &|_| ()), None);
             // The friction of a rotary axis holds it where it stands.
             if index != Y {
                 continue;

@@ -6,7 +6,7 @@ use host_link::record::Recorded;
 use shared::config::MotionConfig;
 use shared::io::{MOTOR_AXIS, MOTOR_NAMES};
 use shared::kinematics::AXIS_UNIT;
-use shared::state::Fault;
+use shared::state::{Fault, State};
 
 /// What is looked at of a machine that stopped \[ms\].
 const LAST_MS: u64 = 10_000;
@@ -38,8 +38,28 @@ pub fn stopped(machine: &MotionConfig, error: &JobError, record: &Recorded) -> O
     });
     let (motor, course) = worst?;
     let config = machine.motors[motor].as_ref()?;
-    let how = Stopped::of(&course, config.home.velocity, 1.0 / config.counts_per_unit)?;
+    let searched = is_homing(record).then_some(config.home.velocity);
+    let how = Stopped::of(&course, searched, 1.0 / config.counts_per_unit)?;
+    // Of each motor of a gantry the board knows more than the record.
+    let seen_still =
+        matches!(error, JobError::Motion(Fault::NoMovement { .. })) && is_of_gantry(machine, motor);
+    let how = match how {
+        Stopped::Reversed | Stopped::Late if seen_still => Stopped::Still,
+        how => how,
+    };
     Some((motor, how))
+}
+
+fn is_of_gantry(machine: &MotionConfig, motor: usize) -> bool {
+    machine.gantry.is_some() && MOTOR_AXIS[motor] == MOTOR_AXIS[0]
+}
+
+/// Whether the board, before it stopped, was searching for reference marks.
+fn is_homing(record: &Recorded) -> bool {
+    let samples = record.motion();
+    let skip = samples.len().saturating_sub(LAST_MS);
+    let states = samples.iter().skip(skip as usize).map(|sample| sample.state);
+    states.filter(|state| *state != State::Fault).last() == Some(State::Homing)
 }
 
 /// The last moments of motor `index` (mm or °). How far the motors of a gantry are apart is known, but not to which side: of both
@@ -47,7 +67,7 @@ pub fn stopped(machine: &MotionConfig, error: &JobError, record: &Recorded) -> O
 fn course(machine: &MotionConfig, record: &Recorded, index: usize) -> Course {
     let axis = MOTOR_AXIS[index];
     let unit = AXIS_UNIT[axis];
-    let gantry = machine.gantry.as_ref().filter(|_| axis == MOTOR_AXIS[0]);
+    let gantry = machine.gantry.as_ref().filter(|_| is_of_gantry(machine, index));
     let mut courses = [Course::default(), Course::default()];
     let samples = record.motion();
     let skip = samples.len().saturating_sub(LAST_MS);

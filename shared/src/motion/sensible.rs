@@ -124,9 +124,47 @@ fn most_gain(delay_s: f64) -> f64 {
     FRAC_PI_2 / libm::fmax(delay_s, LEAST_DELAY_S)
 }
 
+/// Checks the gains of the position loop of `motor` beside the lag of its drive and its filters.
+///
+/// # Errors
+/// The first gain that no machine file may have.
+pub fn check_gains(owner: &str, motor: &MotorConfig) -> Result<(), ParameterError> {
+    let of = |field, value, range| within(owner, field, value, range);
+    let most = most_gain(motor.acceleration_feed_forward_s + motor.filter_lag_s());
+    let kp = of("kp", motor.kp, 1.0..=most)?;
+    // A damping of 0.7 at least.
+    of("ki", motor.ki, 0.0..=0.5 * kp * kp)?;
+    of("kd", motor.kd, 0.0..=MOST_DERIVATIVE)?;
+    Ok(())
+}
+
+/// Checks the `coupling` of a gantry whose first motor is `motor`: both motors answer to a skew, each to its own error besides.
+///
+/// # Errors
+/// It is more than a machine file may have.
+pub fn check_coupling(coupling: f64, motor: &MotorConfig) -> Result<(), ParameterError> {
+    let most = 0.5 * (most_gain(motor.acceleration_feed_forward_s + motor.filter_lag_s()) - motor.kp);
+    within("gantry", "coupling", coupling, 0.0..=libm::fmax(most, 0.0))?;
+    Ok(())
+}
+
+fn most_error_at_rest(axis: &AxisConfig) -> f64 {
+    let travel = axis.travel_max - axis.travel_min;
+    libm::fmin(ERROR_AT_REST * travel, MOST_ERROR_AT_REST)
+}
+
+fn most_error_at_speed(axis: &AxisConfig) -> f64 {
+    ERROR_AT_SPEED * (axis.travel_max - axis.travel_min)
+}
+
+/// Largest `following_error_base` that `motor` of `axis` may have beside its `following_error_time_s` (mm or °).
+pub fn most_following_error_base(motor: &MotorConfig, axis: &AxisConfig) -> f64 {
+    let left = most_error_at_speed(axis) - motor.following_error_time_s * axis.max_velocity;
+    libm::fmin(most_error_at_rest(axis), left)
+}
+
 fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<(), ParameterError> {
     let of = |field, value, range| within(owner, field, value, range);
-    let travel = axis.travel_max - axis.travel_min;
     let full_scale = within_either_sign(owner, "velocity_at_10v", motor.velocity_at_10v, SPEEDS)?;
     let command = of("max_command", motor.max_command, axis.max_velocity..=full_scale)?;
     let most = libm::fmin(*SCALES.end(), MOST_COUNTS / (command * SERVO_PERIOD_S));
@@ -143,10 +181,7 @@ fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<()
         0.0..=LONGEST_FILTER_S,
     )?;
     check_filters(owner, motor)?;
-    let most = most_gain(motor.acceleration_feed_forward_s + motor.filter_lag_s());
-    let kp = of("kp", motor.kp, 1.0..=most)?;
-    // A damping of 0.7 at least.
-    of("ki", motor.ki, 0.0..=0.5 * kp * kp)?;
+    check_gains(owner, motor)?;
     of("integral_limit", motor.integral_limit, 0.0..=command)?;
     if motor.anti_windup_time_s != 0.0 {
         of(
@@ -155,7 +190,6 @@ fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<()
             SERVO_PERIOD_S..=LONGEST_RAMP_S,
         )?;
     }
-    of("kd", motor.kd, 0.0..=MOST_DERIVATIVE)?;
     of(
         "derivative_filter_s",
         motor.derivative_filter_s,
@@ -175,13 +209,13 @@ fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<()
         of("friction.lead_s", friction.lead_s, 0.0..=LONGEST_FILTER_S)?;
         of("friction.decay_s", friction.decay_s, 0.0..=LONGEST_RAMP_S)?;
     }
-    let most = libm::fmin(ERROR_AT_REST * travel, MOST_ERROR_AT_REST);
+    let most = most_error_at_rest(axis);
     let base = of(
         "following_error_base",
         motor.following_error_base,
         FEWEST_COUNTS / scale..=most,
     )?;
-    let room = (ERROR_AT_SPEED * travel - base) / axis.max_velocity;
+    let room = (most_error_at_speed(axis) - base) / axis.max_velocity;
     of(
         "following_error_time_s",
         motor.following_error_time_s,
@@ -217,9 +251,7 @@ fn check_gantry(gantry: &GantryConfig, motor: &MotorConfig) -> Result<(), Parame
     if width < NARROWEST_MM {
         of("y2_mm", y2, y1 + NARROWEST_MM..=LARGEST_MACHINE_MM)?;
     }
-    // Both motors answer to a skew, each to its own error besides.
-    let most = 0.5 * (most_gain(motor.acceleration_feed_forward_s + motor.filter_lag_s()) - motor.kp);
-    of("coupling", gantry.coupling, 0.0..=libm::fmax(most, 0.0))?;
+    check_coupling(gantry.coupling, motor)?;
     of(
         "coupling_derivative",
         gantry.coupling_derivative,

@@ -54,9 +54,10 @@ impl Motor {
         let full_scale = check(owner, "velocity_at_10v", config.velocity_at_10v, |x| x != 0.0)?;
         // At rest a motor has no following error for more than that.
         let rest = config.following_error_base * unit;
+        let pitch = unit / counts;
         Ok(Self {
-            movement: MovementCheck::new(full_scale * unit, rest).against_offset(full_scale * unit),
-            pitch: unit / counts,
+            movement: MovementCheck::new(full_scale * unit, rest).against_offset(full_scale * unit, pitch),
+            pitch,
             velocity_at_10v: full_scale * unit,
             following: FollowingTrip::build(index as u8, owner, config, unit)?,
             encoder: EncoderCheck::build(index as u8, owner, config, SERVO_PERIOD_S)?,

@@ -14,7 +14,7 @@ use shared::kinematics::AXIS_UNIT;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The machine homes. Each motor then goes 20 mm (20°) there and back, thirteen times, while its drive is shaken by up to
+/// The machine homes. Each motor then goes 20 mm (20°) there and back, nineteen times, while its drive is shaken by up to
 /// 1 mm, and is shaken by some counts where it stands; from what its grating tells come gain and delay of the drive, and the highest
 /// gains with a gain margin of 6 dB, a phase margin of 45° and a sensitivity of 2 at most, with notches at resonances. It also swings
 /// 1 mm (1°) to both sides where it stands, for the feed-forward of its friction. Everything must be free to move.
@@ -170,6 +170,9 @@ fn tell(
         found.motor.kp,
         margins(&found.margins)
     );
+    if let Some(held) = &found.held {
+        outln!("    the margins allow more, a machine file does not: {held}");
+    }
     for notch in &found.motor.notches {
         outln!(
             "    notch at {:.1} Hz, damping {}, depth {:.2}",

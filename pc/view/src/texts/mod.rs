@@ -330,6 +330,7 @@ texts! {
     Sensitivity: "sensitivity, peak", "灵敏度峰值", "Empfindlichkeit, Spitze";
     Crossover: "crossover [Hz]", "穿越频率 [Hz]", "Durchtritt [Hz]";
     DriveFound: "drive: gain {}, delay {} ms", "驱动：增益 {}，延迟 {} ms", "Antrieb: Verstärkung {}, Verzug {} ms";
+    GainHeld: "the margins allow more gain, a machine file does not: {}", "裕度允许更高的增益，但机器文件不允许：{}", "die Reserven lassen mehr Verstärkung zu, eine Maschinendatei nicht: {}";
     NotchFound: "notch at {} Hz, damping {}, depth {}", "陷波 {} Hz，阻尼 {}，深度 {}", "Kerbfilter bei {} Hz, Dämpfung {}, Tiefe {}";
     NoNotch: "no notch is worth its lag", "陷波滤波无益", "kein Kerbfilter lohnt sich";
     FrictionFound: "friction: {} {}, turned round at {} {}", "摩擦：{} {}，换向速度 {} {}", "Reibung: {} {}, gewendet bei {} {}";

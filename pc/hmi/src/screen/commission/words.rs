@@ -69,6 +69,8 @@ pub(super) fn parts(view: &View, motor: &Motor, found: &Found) -> Vec<String> {
     let (gain, delay) = (found.of_loop.lag.gain, found.of_loop.lag.delay_s * 1e3);
     let drive = words.with(Text::DriveFound, &[&format!("{gain:.4}"), &format!("{delay:.2}")]);
     let mut told = vec![drive];
+    let held = found.of_loop.held.as_ref();
+    told.extend(held.map(|held| words.with(Text::GainHeld, &[&held.to_string()])));
     for notch in &found.of_loop.motor.notches {
         let [hz, damping, depth] = [
             format!("{:.1}", notch.frequency_hz),
