@@ -64,11 +64,14 @@ impl Weld {
         let program = interpret(&format!("{text}\nM2\n"), options);
         let program = program.map_err(|error| JobError::Block(error.to_string()))?;
         let before = *self.planner.systems();
-        if !program.paths.is_empty() || program.systems == before {
+        if !program.paths.is_empty() || *program.systems == before {
             self.program(session, job, &program)?;
         }
-        self.planner.set_systems(program.systems);
-        let are = before.iter().zip(&program.systems).map(|(was, is)| was != is);
+        self.planner.set_systems(*program.systems);
+        let are = before
+            .iter()
+            .zip(program.systems.iter())
+            .map(|(was, is)| was != is);
         let set = System::ALL.iter().zip(are).filter(|(_, set)| *set);
         let set: Vec<_> = set.map(|(system, _)| system.name()).collect();
         if !set.is_empty() {

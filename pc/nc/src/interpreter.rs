@@ -431,7 +431,7 @@ impl Interpreter {
             assumes: self.assumed.map(|place| (self.setup.start, place)),
             branches: self.branches,
             welds: self.welds,
-            systems: std::array::from_fn(|index| self.offsets.systems[index]),
+            systems: Box::new(std::array::from_fn(|index| self.offsets.systems[index])),
             notices: self.notices,
         }
     }

@@ -26,7 +26,7 @@ pub struct Program {
     /// Names of the weld data that it calls, by the numbers of [`ProgramAction::WeldOn`].
     pub welds: Vec<String>,
     /// Where G54 to G59.3 are when it ends.
-    pub systems: [CoordinateSystem; SYSTEMS],
+    pub systems: Box<[CoordinateSystem; SYSTEMS]>,
     /// What a person should know of how it was read, and what it says itself (MSG, DEBUG, PRINT).
     pub notices: Vec<Notice>,
 }

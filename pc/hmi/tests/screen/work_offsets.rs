@@ -18,7 +18,7 @@ fn choose(bench: &mut Bench, name: &str) {
 fn tip(station: &Station) -> [f64; 3] {
     let axes = station.live.motion.as_ref().expect("a state").axes;
     let machine = station.by_hand().expect("a machine");
-    machine.planner.tip(&axes).position_mm.into()
+    machine.planner.tip(&axes).position_mm
 }
 
 #[test]
