@@ -35,8 +35,8 @@ pub(super) struct Sticky {
     peck: Option<f64>,
     /// P \[s\].
     dwell: Option<f64>,
-    /// Level before the first of a run of cycles, in the frame of the tip \[mm\].
-    initial: Option<f64>,
+    /// Axis of a run of cycles, and the level before the first of them, in the frame of the tip \[mm\].
+    initial: Option<(usize, f64)>,
 }
 
 impl Sticky {
@@ -260,7 +260,9 @@ impl Interpreter {
 
     /// Level before this run of cycles, in coordinates of the program.
     fn initial_level(&mut self, axis: usize) -> f64 {
-        let level = *self.sticky.initial.get_or_insert(self.at[axis]);
+        // In another plane a run begins.
+        let kept = self.sticky.initial.filter(|(of, _)| *of == axis);
+        let (_, level) = *self.sticky.initial.insert(kept.unwrap_or((axis, self.at[axis])));
         let mut tip = self.at;
         tip[axis] = level;
         self.offsets.to_programmed(&tip)[axis]

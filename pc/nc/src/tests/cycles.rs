@@ -52,6 +52,15 @@ fn holes_are_drilled_one_after_the_other_from_the_level_before() {
 }
 
 #[test]
+fn a_run_that_goes_on_in_another_plane_begins_there() {
+    // Y of the tip is 30 before the first hole along Y, and again after it.
+    let program = run("F100\nG0 Y30 Z4\nG98 G81 X5 Z-3 R2\nG18 X6 Z1 Y-3 R2\nM2").unwrap();
+    let targets = program.paths[3..].iter().flat_map(|path| &path.targets);
+    let along_y: Vec<_> = targets.filter_map(|target| target.words.axes[1]).collect();
+    assert_eq!(along_y, [30.0, 30.0, 2.0, -3.0, 30.0]);
+}
+
+#[test]
 fn pecks_go_down_by_q() {
     let expected = [
         over(1.0, 0.0),
