@@ -109,9 +109,9 @@ fn two_motors_are_measured_looked_at_written_and_on_record_and_another_start_goe
     bench.tap("Measure…");
     for told in [
         "Measure B, C?",
-        "B: 13 times 20.00 ° there and back",
+        "B: 19 times 20.00 ° there and back",
         "1.00 ° to both sides",
-        "about 3 min",
+        "about 4 min",
     ] {
         assert!(bench.says(told), "{told}");
     }
@@ -132,9 +132,9 @@ fn two_motors_are_measured_looked_at_written_and_on_record_and_another_start_goe
     for told in [
         "swings by itself",
         "Write what was found",
-        "-5.7",
+        "-5.4",
         "111.4",
-        "7.9",
+        "7.7",
         "notch at 66.4 Hz",
     ] {
         assert!(bench.says(told), "{told}");
@@ -222,7 +222,7 @@ fn what_was_measured_before_a_stop_is_kept() {
     assert!(bench.says("B: measured") && bench.says("C: not measured"));
     assert!(is_ticked(&bench, "C") && !is_ticked(&bench, "B"));
     // A fault ends it, too.
-    let plant = noisy(bench.folder.path(), "40.0");
+    let plant = noisy(bench.folder.path(), "200.0");
     bench.station().place.plant = plant.parse().expect("a plant");
     measure(&mut bench, &["B"]);
     is_over(&mut bench);
