@@ -13,7 +13,7 @@ use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
 use host_link::spool::Spooling;
 use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
-use shared::state::{Fault, State};
+use shared::state::{Fault, State, TrackerFault};
 use std::time::Duration;
 
 /// Interval of the status requests to the boards; they also keep the session alive.
@@ -258,13 +258,12 @@ impl<'a> Session<'a> {
 
     /// An error of the boards, with the reason if this program was not there for them just before.
     fn explained(&self, error: JobError) -> JobError {
-        let of_boards = matches!(
-            error,
-            JobError::Link(_) | JobError::Motion(_) | JobError::Tracker(_) | JobError::TooLong { .. }
-        );
+        let Some(missed) = self.missed_after(&error) else {
+            return error;
+        };
         match self.boards.last_stall() {
             Some(Stall { ended, lasted })
-                if of_boards && lasted >= self.missed && self.boards.now() < ended + JUST_BEFORE + lasted =>
+                if lasted >= missed && self.boards.now() < ended + JUST_BEFORE + lasted =>
             {
                 JobError::Absent {
                     seconds: lasted.as_secs_f64(),
@@ -272,6 +271,21 @@ impl<'a> Session<'a> {
                 }
             }
             _ => error,
+        }
+    }
+
+    /// How long a stall of this program has to be to lead to `error`; `None` if it does not come from stalls.
+    fn missed_after(&self, error: &JobError) -> Option<Duration> {
+        use TrackerFault::{BesideSeam, LostSeam, SeamNotSeen};
+        match error {
+            // The measurements are missing at once: at speed, the tip passes what was seen ahead of it in less than 0.1 s.
+            JobError::Tracker(SeamNotSeen { .. } | LostSeam { .. } | BesideSeam { .. }) => {
+                Some(Duration::ZERO)
+            }
+            JobError::Link(_) | JobError::Motion(_) | JobError::Tracker(_) | JobError::TooLong { .. } => {
+                Some(self.missed)
+            }
+            _ => None,
         }
     }
 

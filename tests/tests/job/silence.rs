@@ -21,13 +21,15 @@ impl Operator for StopsWhen {
 enum Wrong {
     /// The tracker board does not report its state any more, and the operator stops the job.
     TrackerSilent,
-    /// This program is paused.
-    Paused,
+    /// This program is paused for so long.
+    Paused(Duration),
     /// It is, and another one has its place on the boards afterwards.
     Replaced,
 }
 
 const PAUSE: Duration = Duration::from_secs(3);
+/// A pause that the link bears, in which the tip passes all that was seen ahead of it.
+const SHORT_PAUSE: Duration = Duration::from_millis(300);
 
 struct Alone {
     boards: SimulatedBoards,
@@ -96,16 +98,19 @@ impl Boards for Alone {
             && telemetry.samples.iter().any(|sample| sample.beams[0])
         {
             self.begun = true;
-            if self.wrong != Wrong::TrackerSilent {
-                let end = self.now() + PAUSE;
-                while self.now() < end {
-                    self.boards.receive(Duration::from_millis(1))?;
-                }
-                self.last_stall = Some(Stall {
-                    ended: self.now(),
-                    lasted: PAUSE,
-                });
+            let lasted = match self.wrong {
+                Wrong::TrackerSilent => return Ok(received),
+                Wrong::Paused(lasted) => lasted,
+                Wrong::Replaced => PAUSE,
+            };
+            let end = self.now() + lasted;
+            while self.now() < end {
+                self.boards.receive(Duration::from_millis(1))?;
             }
+            self.last_stall = Some(Stall {
+                ended: self.now(),
+                lasted,
+            });
         }
         Ok(received)
     }
@@ -137,12 +142,12 @@ fn a_tracker_that_does_not_answer_keeps_nobody_from_stopping() {
     assert_off(&mut boards);
 }
 
-/// Welds with a pause.
-fn paused(boards: &mut Alone, interrupted: &Rc<Cell<bool>>) {
+/// Welds with a pause that the end is put down to.
+fn paused(boards: &mut Alone, interrupted: &Rc<Cell<bool>>, told_as: &str) -> String {
     let ended = weld(boards, &mut StopsWhen(interrupted.clone()));
     let told = ended.error.expect("the boards stop without the PC").to_string();
     assert!(
-        told.starts_with("this PC was stalled for 3.0 s (paused") && told.contains("board"),
+        told.starts_with(&format!("this PC was stalled for {told_as} (paused")) && told.contains("board"),
         "{told}"
     );
     assert_eq!(ended.report.outcome, Outcome::Failed);
@@ -151,20 +156,34 @@ fn paused(boards: &mut Alone, interrupted: &Rc<Cell<bool>>) {
         "{:?}",
         ended.report.faults
     );
+    told
 }
 
 #[test]
 fn a_paused_pc_says_that_it_was_paused() {
     let interrupted = Rc::new(Cell::new(false));
-    let mut boards = Alone::new(Wrong::Paused, &interrupted);
-    paused(&mut boards, &interrupted);
+    let mut boards = Alone::new(Wrong::Paused(PAUSE), &interrupted);
+    paused(&mut boards, &interrupted, "3.0 s");
+    assert_off(&mut boards);
+}
+
+#[test]
+fn a_pc_that_was_busy_for_a_moment_does_not_blame_the_seam() {
+    let interrupted = Rc::new(Cell::new(false));
+    let mut boards = Alone::new(Wrong::Paused(SHORT_PAUSE), &interrupted);
+    let told = paused(&mut boards, &interrupted, "0.3 s");
+    assert!(told.contains("seam"), "{told}");
     assert_off(&mut boards);
 }
 
 #[test]
 fn a_pc_that_was_paused_until_another_has_its_place_says_so_too() {
     let interrupted = Rc::new(Cell::new(false));
-    paused(&mut Alone::new(Wrong::Replaced, &interrupted), &interrupted);
+    paused(
+        &mut Alone::new(Wrong::Replaced, &interrupted),
+        &interrupted,
+        "3.0 s",
+    );
 }
 
 /// Boards in a network that answer a little later, and whose tracker board is lost for good once the beam is on.
