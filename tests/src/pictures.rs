@@ -123,6 +123,7 @@ fn by_pictures(
         calibrations: calibrations.unwrap_or_else(|error| panic!("{error}")),
         kept: None,
         noted: None,
+        shown_every: None,
     };
     let surroundings = Surroundings {
         cameras: CameraChoice::Images(Box::new(images), PictureChoice::Rendered(Box::new(scene))),

@@ -83,6 +83,9 @@ enum Task {
         /// Test the page for browsers in Chromium instead
         #[arg(long, conflicts_with = "boards")]
         browser: bool,
+        /// Run the long tests on emulated boards instead: a drawn machine is commissioned, and welds
+        #[arg(long, conflicts_with_all = ["boards", "browser"])]
+        extended: bool,
     },
     /// Count instructions, on the PC by valgrind and on the emulated Cortex-M7; run programs through the planner
     #[command(subcommand)]
@@ -127,6 +130,7 @@ fn main() -> ExitCode {
             .map(|_| ExitCode::SUCCESS),
         Task::Check => set_up(&[setup::Tool::Components, setup::Tool::Screen]).map(|()| test::check()),
         Task::Test { browser: true, .. } => set_up(&setup::BROWSER).and_then(|()| test::browser()),
+        Task::Test { extended: true, .. } => set_up(&setup::EMULATION).map(|()| test::extended()),
         Task::Test { boards: None, .. } => set_up(&setup::ALL).map(|()| test::run()),
         Task::Test {
             boards: Some(test::OtherBoards::VirtualNucleo),

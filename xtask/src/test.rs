@@ -75,6 +75,17 @@ pub fn browser() -> Result<ExitCode> {
     Ok(tally.close())
 }
 
+/// Runs the tests on emulated boards that are too long for the suite.
+pub fn extended() -> ExitCode {
+    let mut tally = Tally::default();
+    tally.test("long tests on emulated boards", || {
+        let mut command = emulated_tests(&BOARDS)?;
+        command.args(["--ignored", "--nocapture", "long::"]);
+        Ok(command)
+    });
+    tally.close()
+}
+
 /// Runs what needs cargo only: format, lints, tests of the host, with whole jobs on simulated boards.
 pub fn check() -> ExitCode {
     let mut tally = Tally::default();
@@ -116,7 +127,7 @@ pub fn run() -> ExitCode {
         _ => bail!("a firmware is outside its budget"),
     });
     tally.check("stack that runs over on mps2-an500", bench::stack_overflow);
-    tally.test("tests on emulated boards", emulated_tests);
+    tally.test("tests on emulated boards", || emulated_tests(&EMULATED));
     tally.test("weld on virtual boards", || {
         virtual_nucleo::jobs(board_tests(&BOARDS, &CAMERAS)?, &ON_VIRTUAL_BOARDS)
     });
@@ -143,10 +154,10 @@ fn clippy(selection: &[&str]) -> Result<()> {
     cargo::run(&[&["clippy", "--quiet"], selection, &["--", "-D", "warnings"]].concat())
 }
 
-fn emulated_tests() -> Result<Command> {
+fn emulated_tests(tests: &[&str]) -> Result<Command> {
     let logs = target_directory()?.join("emulated");
     let boot = emulate::build(logs, 1.0, DEFAULT_MACHINE.to_owned(), PlantChoice::Shipped)?;
-    let mut command = board_tests(&EMULATED, &CAMERAS)?;
+    let mut command = board_tests(tests, &CAMERAS)?;
     let xtask = env::current_exe().context("cannot find this program's own file")?;
     command
         .args(["--skip", "on_model::"])

@@ -52,6 +52,11 @@ pub trait Boards {
         None
     }
 
+    /// Whether their time stands still while this program does something else than to receive, however long that takes.
+    fn wait(&self) -> bool {
+        false
+    }
+
     /// Datagrams that were not understood, or that came while too many waited; the simulated ones all arrive.
     fn dropped_datagrams(&self) -> u32 {
         0

@@ -115,6 +115,27 @@ pub struct MeasuredPicture {
     pub pixels: Vec<u8>,
     /// The seam, if one is accepted.
     pub seam: Option<SeamInPicture>,
+    /// How sharp it is.
+    pub focus: Focus,
+}
+
+/// How sharp a picture is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Focus {
+    /// Nothing is sharp, or nobody has looked.
+    #[default]
+    Nothing,
+    /// Nothing is sharp: the work is higher than what the picture shows.
+    TooHigh,
+    /// Nothing is sharp: the work is lower than what the picture shows.
+    TooLow,
+    /// There is a sharp band.
+    Band {
+        /// Energy of its texture over the noise.
+        contrast: f64,
+        /// n of the seam: how far it is out of focus, towards the camera, where one is measured \[mm\].
+        defocus_mm: Option<f64>,
+    },
 }
 
 /// A seam in a picture, in the camera's frame.

@@ -33,6 +33,8 @@ pub struct Spooling {
     pub in_memory: usize,
     /// Whether any are kept.
     pub keeps: bool,
+    /// Whether a job waits for the disk, and loses nothing: its boards wait meanwhile.
+    pub waits: bool,
 }
 
 impl Default for Spooling {
@@ -42,6 +44,7 @@ impl Default for Spooling {
             folder: None,
             in_memory: 1 << 16,
             keeps: true,
+            waits: false,
         }
     }
 }

@@ -83,6 +83,23 @@ fn what_has_no_place_is_counted_and_the_rest_stays() {
     assert!(error.to_string().contains("records are lost: "), "{error}");
 }
 
+/// Batches come faster than the disk takes a record at a time.
+#[test]
+fn a_writer_that_may_wait_loses_nothing() {
+    let mut writer = Writer::new(Spooling {
+        in_memory: 1,
+        waits: true,
+        ..Spooling::default()
+    });
+    let batches = 300;
+    for batch in 0..batches {
+        writer.hand_over((100 * batch..100 * (batch + 1)).collect::<Vec<u32>>());
+    }
+    let spool = writer.finish([]);
+    assert_eq!(spool.check(), Ok(()));
+    assert!(spool.iter().eq(0..100 * batches));
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_loses_blocks_and_says_so() {

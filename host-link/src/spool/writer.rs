@@ -1,9 +1,9 @@
-//! A spool that a thread of its own fills, so that whoever has the records never waits for the disk.
+//! A spool that a thread of its own fills, so that whoever has the records need not wait for the disk.
 
 use super::{Spool, Spooling};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{SendError, SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 
 /// Batches that may wait for the disk: of samples of a board a minute, 15 MB.
@@ -34,17 +34,19 @@ impl<T: Serialize + DeserializeOwned + Clone + Send + 'static> Writer<T> {
         }
     }
 
-    /// Puts a batch at the end, or loses it where the disk is a minute behind; never waits.
+    /// Puts a batch at the end. Where the disk is a minute behind, it waits or loses the batch, as [`Spooling::waits`] says.
     pub fn hand_over(&mut self, batch: Vec<T>) {
         let spooling = &self.spooling;
         let running = self
             .running
             .get_or_insert_with(|| Running::start(spooling.clone()));
-        if let Err(TrySendError::Full(batch) | TrySendError::Disconnected(batch)) =
-            running.queue.try_send(batch)
-        {
-            self.too_slow += batch.len() as u64;
-        }
+        let lost = if spooling.waits {
+            running.queue.send(batch).err().map(|SendError(batch)| batch)
+        } else {
+            let sent = running.queue.try_send(batch).err();
+            sent.map(|(TrySendError::Full(batch) | TrySendError::Disconnected(batch))| batch)
+        };
+        self.too_slow += lost.map_or(0, |batch| batch.len() as u64);
     }
 
     /// All of them, and `rest` behind.

@@ -9,8 +9,6 @@ use shared::protocol::{CaptureSample, Excitation, Excited};
 
 /// Part of its proportional gains with which a machine is measured.
 const SOFTENED: f64 = 0.25;
-/// Part of the skew that trips a gantry.
-const OF_SKEW: f64 = 0.5;
 /// Part of the speed of an axis that ends one.
 const OF_SPEED: f64 = 0.9;
 
@@ -59,7 +57,7 @@ pub fn excitations(machine: &MotionConfig, index: usize) -> Vec<Excitation> {
     let turning = Excitation {
         motor: index as u8,
         excited: Excited::Reference,
-        amplitude: turns(speed, acceleration).min(askew(machine, index)),
+        amplitude: turns(speed, acceleration),
         from_hz: TURNS_HZ,
         to_hz: TURNS_HZ,
         settle_periods: SETTLE_PERIODS,
@@ -86,11 +84,6 @@ pub fn excitations(machine: &MotionConfig, index: usize) -> Vec<Excitation> {
         .chain(at_rest)
         .chain([shaken(swing(way.abs().max(TRAVEL), acceleration, speed), way)])
         .collect()
-}
-
-/// How far motor `index` may go to either side of where it stands alone (mm or °): of a gantry, without tripping its skew.
-fn askew(machine: &MotionConfig, index: usize) -> f64 {
-    gantry(machine, index).map_or(f64::INFINITY, |gantry| OF_SKEW * gantry.skew_trip_mm)
 }
 
 /// The gantry, if the motor with this `index` is one of its two.

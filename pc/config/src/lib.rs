@@ -9,6 +9,7 @@ pub mod parameters;
 pub mod probe;
 mod range;
 mod sentence;
+pub mod sets;
 pub mod table;
 pub mod toml_file;
 pub mod weld_data;

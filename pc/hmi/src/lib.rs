@@ -7,6 +7,8 @@
 //! - [`running`]: its job, on a thread of its own.
 //! - [`commissioning`]: motors while they are commissioned.
 //! - [`parameters`]: the machine file while its parameters are changed.
+//! - [`sets`]: tools and weld data while they are changed.
+//! - [`edited`]: what both are: the text of a file that is edited.
 //! - [`records`]: reports of past jobs, read back.
 //! - [`teaching`]: places of the tip that are being taught, for a part.
 //! - [`access`]: who may do what.
@@ -23,6 +25,7 @@
 pub mod access;
 pub mod commissioning;
 pub mod connection;
+pub mod edited;
 pub mod loaded;
 pub mod parameters;
 pub mod record;
@@ -30,6 +33,7 @@ pub mod records;
 pub mod running;
 pub mod screen;
 pub mod serving;
+pub mod sets;
 pub mod settings;
 mod sockets;
 pub mod station;

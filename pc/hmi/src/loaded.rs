@@ -31,7 +31,7 @@ pub struct Loaded {
     /// Where the program is.
     pub program_file: PathBuf,
     /// The program.
-    pub program: Program,
+    pub program: Arc<Program>,
     /// The same, as it is drawn.
     pub drawn: Drawn,
     /// The part that its run is judged by.
@@ -102,7 +102,7 @@ impl Loaded {
             seam: deviation_beside(program_file)?,
             notices,
             machine,
-            program,
+            program: Arc::new(program),
         })
     }
 }
@@ -147,10 +147,15 @@ fn interpreted(file: &Path, machine: &MachineFile, planner: &Planner) -> anyhow:
     interpret_file(opened, options).with_context(|| format!("program {name}"))
 }
 
-/// The deviation of the seams beside `program`.
-fn deviation_beside(program: &Path) -> anyhow::Result<Option<(PathBuf, Arc<Deviation>)>> {
+/// Where the deviation of the seams of `program` is, if there is one.
+pub(crate) fn deviation_file(program: &Path) -> PathBuf {
     let stem = program.file_stem().unwrap_or_default().to_string_lossy();
-    let file = program.with_file_name(format!("{stem}-deviation.csv"));
+    program.with_file_name(format!("{stem}-deviation.csv"))
+}
+
+/// The deviation of the seams beside `program`.
+pub(crate) fn deviation_beside(program: &Path) -> anyhow::Result<Option<(PathBuf, Arc<Deviation>)>> {
+    let file = deviation_file(program);
     if !file.exists() {
         return Ok(None);
     }

@@ -1,6 +1,8 @@
 //! A job, on a thread of its own: of the program that is loaded, or by hand.
 
+mod by_hand;
 mod commission;
+mod lesson;
 
 use crate::loaded::Loaded;
 use crate::seen::Ended;
@@ -12,13 +14,14 @@ use host_link::boards::Boards;
 use host_link::events::{Interest, Subscription};
 use host_link::spool::Spooling;
 use host_link::{Command, CommandError, Control, Remote, control};
-use job::{CircularTest, ImageCameras, Job, Names, PlannedCircle, SeenCircle, Work};
+use job::{CircularTest, ImageCameras, Job, Names, PlannedCircle, SeenCircle, TaughtSeam, Work};
 use plant_file::PlantChoice;
 use report::{LogColumns, LogWriter, Report};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use world::{BoardChoice, BoardsError, CameraChoice, PictureChoice, Surroundings};
+use std::time::Duration;
+use world::{BoardChoice, BoardsError, CameraChoice, Deviation, PictureChoice, Surroundings};
 
 /// Events that wait for the screen: some seconds of both boards. What comes beyond is lost for the screen, and only for it.
 const WAITING: usize = 4096;
@@ -36,7 +39,12 @@ pub enum Task {
         single_block: bool,
     },
     /// The machine homes, and is operated by hand then.
-    ByHand(Arc<Machine>),
+    ByHand {
+        /// The machine.
+        machine: Arc<Machine>,
+        /// The program whose seams are there, if it is simulated.
+        loaded: Option<Arc<Loaded>>,
+    },
     /// Motors are measured.
     Measure {
         /// The machine.
@@ -51,6 +59,8 @@ pub enum Task {
         /// The circle.
         circle: Box<PlannedCircle>,
     },
+    /// The cameras are taught seams.
+    Lesson(Arc<Lesson>),
 }
 
 /// A machine, as its file says.
@@ -90,6 +100,8 @@ pub struct Place {
     pub reports: PathBuf,
 }
 
+pub use lesson::Lesson;
+
 /// A job that runs.
 #[derive(Debug)]
 pub struct Running {
@@ -109,6 +121,8 @@ pub struct Outcome {
     pub folder: Option<PathBuf>,
     /// How it went round, if it was to.
     pub circle: Option<(CircularTest, SeenCircle)>,
+    /// How a lesson ended, if it was one.
+    pub taught: Option<TaughtSeam>,
 }
 
 impl Outcome {
@@ -138,11 +152,14 @@ impl Running {
                 let _ = own.send(Command::SingleBlock(single_block));
                 run(&loaded, &place, &own, control)
             }
-            Task::ByHand(machine) => by_hand(&machine, &place, &own, control),
+            Task::ByHand { machine, loaded } => {
+                by_hand::run(&machine, loaded.as_deref(), &place, &own, control)
+            }
             Task::Measure { machine, motors } => {
                 commission::measure(&machine, &motors, &place, &own, control)
             }
             Task::Circle { machine, circle } => commission::circle(&machine, &circle, &place, &own, control),
+            Task::Lesson(lesson) => lesson::teach(&lesson, &place, &own, control),
         });
         Self {
             remote,
@@ -190,22 +207,6 @@ fn run(loaded: &Loaded, place: &Place, remote: &Remote, control: Control) -> any
     outcome
 }
 
-/// Nothing is recorded, however long it lasts.
-fn by_hand(
-    machine: &Machine,
-    place: &Place,
-    remote: &Remote,
-    mut control: Control,
-) -> anyhow::Result<Outcome> {
-    let job = bare(&machine.is, Work::ByHand, Spooling::nothing());
-    let mut boards = connect(&machine.is, place, remote)?;
-    let record = job::run(boards.as_mut(), &job, &mut control)?;
-    Ok(Outcome {
-        error: record.error.as_ref().map(ToString::to_string),
-        ..Outcome::default()
-    })
-}
-
 /// `work` with nothing around the machine, no part to judge and no report.
 fn bare<'a>(machine: &'a MachineFile, work: Work<'a>, spooling: Spooling) -> Job<'a> {
     Job {
@@ -238,7 +239,14 @@ fn run_in(
             .filter(|part| loaded.drawn.from_line.is_none() || part.t_seam().is_some()),
         speed_m_per_min: None,
         from_line: loaded.drawn.from_line,
-        surroundings: surroundings(loaded, place)?.into(),
+        surroundings: surroundings(
+            &loaded.machine,
+            &loaded.machine_file,
+            loaded.seam.as_ref().map(|(_, seam)| seam),
+            place,
+            None,
+        )?
+        .into(),
         spooling: Spooling::in_folder(folder),
         names: names(loaded, place),
     };
@@ -260,7 +268,7 @@ fn run_in(
         error: ended.error.as_ref().map(ToString::to_string),
         report: ended.began.then_some(ended.report),
         folder: written.map(|()| folder.to_owned()),
-        circle: None,
+        ..Outcome::default()
     })
 }
 
@@ -294,21 +302,28 @@ fn names(loaded: &Loaded, place: &Place) -> Names {
     }
 }
 
-/// What is around the machine: real cameras beside real boards, else the simulated world of the program's seams.
-fn surroundings(loaded: &Loaded, place: &Place) -> anyhow::Result<Surroundings> {
-    let machine = &loaded.machine;
+/// What is around the machine in `file`: real cameras beside real boards, else the simulated world, in which seams deviate by `seam`.
+/// Pictures are those of a job, or `shown_every` so long.
+fn surroundings(
+    machine: &MachineFile,
+    file: &Path,
+    seam: Option<&Arc<Deviation>>,
+    place: &Place,
+    shown_every: Option<Duration>,
+) -> anyhow::Result<Surroundings> {
     let is_real = matches!(place.boards, BoardChoice::At { .. });
     let mut surroundings = Surroundings::default();
     if !is_real {
-        surroundings.seam = loaded.seam.as_ref().map(|(_, seam)| Arc::clone(seam));
+        surroundings.seam = seam.cloned();
         surroundings.mounts = place.plant.of(machine.motion.kinematics.name())?.cameras;
     }
     if let Some(unit) = &machine.tracking {
-        let folder = loaded.machine_file.parent().unwrap_or(Path::new(""));
+        let folder = file.parent().unwrap_or(Path::new(""));
         let images = ImageCameras {
             calibrations: unit.cameras.calibrations(folder)?,
             kept: None,
             noted: None,
+            shown_every,
         };
         let source = if is_real {
             PictureChoice::Real(camera::real(&unit.cameras)?)

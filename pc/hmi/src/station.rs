@@ -1,14 +1,17 @@
 //! The station: what is loaded, the job that runs, and what may be asked of it now.
 
+mod apart;
 mod commissioning;
 mod guarded;
+mod lessons;
+pub mod sets;
 mod work_offsets;
 
 use crate::access::Access;
 use crate::live::Earlier;
 use crate::live::{Journal, Live};
 use crate::loaded::Loaded;
-use crate::parameters::Parameters;
+use crate::parameters::{Parameters, Written};
 use crate::record::{Record, earlier};
 use crate::running::{Machine, Outcome, Place, Running, Task};
 use crate::seen::{Seen, Standing};
@@ -60,10 +63,16 @@ pub enum Action {
     Teach,
     /// Other work offsets.
     WorkOffsets,
+    /// Other tools.
+    Tools,
+    /// Other weld data of the program.
+    WeldData,
     /// Another machine file.
     Write,
     /// Motors are measured, or a circle is made.
     Commission,
+    /// The cameras are taught seams.
+    Lesson,
 }
 
 /// See the module.
@@ -82,6 +91,8 @@ pub struct Station {
     pub override_percent: f64,
     loading: Option<JoinHandle<anyhow::Result<Loaded>>>,
     loaded: Option<Arc<Loaded>>,
+    /// The program that was to be loaded last.
+    asked: Option<PathBuf>,
     refused: Option<String>,
     running: Option<Running>,
     /// The machine that is operated by hand.
@@ -89,7 +100,8 @@ pub struct Station {
     /// The program begins as soon as it is not any more.
     starts: bool,
     last: Option<Outcome>,
-    commissioned: commissioning::Commissioned,
+    commissioned: apart::Apart,
+    lessons: apart::Apart,
     access: Access,
     record: Record,
     earlier: Vec<Earlier>,
@@ -110,12 +122,14 @@ impl Station {
             override_percent: 100.0,
             loading: None,
             loaded: None,
+            asked: None,
             refused: None,
             running: None,
             by_hand: None,
             starts: false,
             last: None,
             commissioned: Default::default(),
+            lessons: Default::default(),
             access: Access::default(),
             record,
             earlier,
@@ -160,7 +174,7 @@ impl Station {
 
     /// Whether the job of the program that is loaded runs.
     pub fn runs_program(&self) -> bool {
-        self.is_running() && self.by_hand.is_none() && !self.is_commissioning()
+        self.is_running() && self.by_hand.is_none() && !self.is_commissioning() && !self.is_teaching()
     }
 
     /// What there is to see of it.
@@ -187,7 +201,7 @@ impl Station {
     /// Begins to load `program`, to be run from `from_line` on if that is told.
     pub fn load(&mut self, program: PathBuf, from_line: Option<u32>) {
         let machine = self.machine_file.clone();
-        self.refused = None;
+        (self.refused, self.asked) = (None, Some(program.clone()));
         self.loading = Some(std::thread::spawn(move || {
             Loaded::read(&machine, &program, from_line)
         }));
@@ -204,12 +218,13 @@ impl Station {
         let heard = running && self.live.silent_for(now).is_none();
         match action {
             // What opens for it covers Stop.
-            Action::Load | Action::WorkOffsets => {
+            Action::Load | Action::WorkOffsets | Action::WeldData => {
                 let rests = self.running.is_none() || self.makes_sense(Action::ByHand, now);
                 rests && self.loading.is_none()
             }
             Action::Start => self.makes_sense(Action::Load, now) && self.loaded.is_some(),
-            Action::Home | Action::Write | Action::Commission => {
+            // Blocks by hand go by the tools that were there when the machine was homed.
+            Action::Home | Action::Tools | Action::Write | Action::Commission | Action::Lesson => {
                 self.running.is_none() && self.loading.is_none()
             }
             Action::Teach => true,
@@ -263,7 +278,8 @@ impl Station {
                 self.begin_record(along);
                 (self.override_percent, self.last) = (100.0, None);
                 self.by_hand = Some(Arc::clone(&machine));
-                let task = Task::ByHand(machine);
+                let loaded = self.loaded.clone();
+                let task = Task::ByHand { machine, loaded };
                 self.running = Some(Running::start(task, self.place.clone(), self.stage.as_ref()));
             }
             Err(error) => self.live.journal.alarm(now, &sentence(error.as_ref())),
@@ -286,13 +302,25 @@ impl Station {
             bail!("a machine file is only written where no job runs");
         }
         let written = parameters.write()?;
-        let (file, version) = (parameters.file().display(), written.version.display());
+        self.told_written(now, parameters.file(), &written);
+        Ok(())
+    }
+
+    /// Has on record what was written to `file`, and reads the program anew.
+    fn told_written(&mut self, now: Duration, file: &Path, written: &Written) {
+        let (file, version) = (file.display(), written.version.display());
         let journal = &mut self.live.journal;
         journal.written(now, &file.to_string(), &version.to_string(), &written.changes);
+        self.load_again();
+    }
+
+    /// Reads the program anew, which is none until that is done.
+    fn load_again(&mut self) {
         if let Some(loaded) = self.loaded.take() {
             self.load(loaded.program_file.clone(), loaded.drawn.from_line);
+        } else if let Some(asked) = self.asked.clone() {
+            self.load(asked, None);
         }
-        Ok(())
     }
 
     /// Sends `command` to the job that runs, if the level is enough for it; one that is not taken is told.
@@ -334,7 +362,7 @@ impl Station {
             }
             let by_hand = self.by_hand.take().is_some();
             let mut starts = std::mem::take(&mut self.starts);
-            match self.take_commissioned(running.outcome(), now) {
+            match self.take_apart(running.outcome(), now) {
                 None => {}
                 // There is no verdict on what was done by hand; an error is among what happened.
                 Some(Ok(outcome)) if by_hand => starts &= outcome.error.is_none(),

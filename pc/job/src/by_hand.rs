@@ -29,6 +29,11 @@ const CLEAR_OF_END_MM: f64 = 0.01;
 impl Weld {
     /// Does what is asked for by hand, until the drives are to be off or nobody is there any more.
     pub(super) fn by_hand(&mut self, session: &mut Session, job: &Job) -> Result<(), JobError> {
+        // In a simulated world cameras see the seams of what will be run.
+        let planned = job.surroundings.planned(job.machine, &self.planner, &[]);
+        if let Err(error) = planned {
+            session.control.publish(Event::Message(error.to_string()));
+        }
         loop {
             session.question(Question::ByHand);
             let mut asked = None;

@@ -19,6 +19,7 @@ mod planned;
 mod recentring;
 mod run_in;
 mod run_record;
+mod seam_lesson;
 mod seam_teaching;
 mod session;
 mod slides;
@@ -38,7 +39,7 @@ pub use joint::SeenSeam;
 pub use leading::LedLesson;
 pub use marking::{MarkRun, SeenMarks};
 pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
-pub use seam_teaching::{SeamLesson, TaughtSeam};
+pub use seam_lesson::{LessonOptions, SeamLesson, TaughtSeam};
 pub use stopped::stopped;
 pub use surroundings::{Surroundings, SurroundingsError};
 pub use teaching::{NoTeaching, RangingProbe, Taught, check_teaching};
@@ -340,7 +341,11 @@ impl JobError {
 pub fn run(boards: &mut dyn Boards, job: &Job, control: &mut Control) -> Result<RunRecord, JobError> {
     let planner = Planner::build(job.machine)?;
     let around = job.surroundings.as_ref();
-    let mut session = Session::begin(boards, job.machine, around, job.spooling.clone(), control)?;
+    let spooling = Spooling {
+        waits: boards.wait(),
+        ..job.spooling.clone()
+    };
+    let mut session = Session::begin(boards, job.machine, around, spooling, control)?;
     let mut weld = Weld {
         planner,
         paths: BTreeMap::new(),

@@ -1,5 +1,6 @@
 //! Teaching both seams of a rib with the machine of a session: its cameras measure while it is at rest.
 
+use crate::seam_lesson::{SeamLesson, TaughtSeam};
 use crate::session::Session;
 use crate::tracking::Watched;
 use crate::{Job, JobError, Weld};
@@ -9,11 +10,11 @@ use nc::text::{decimal, tip_words};
 use nc::{Options, interpret};
 use shared::io::{AXES, SIDES, SLIDES};
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
-use std::sync::{Mutex, PoisonError};
+use std::sync::PoisonError;
 use std::time::Duration;
 use teach::seam::{
-    CameraMachine, Cameras, Drawing, EndSighting, Ended, Follower, Head, JogOperator, MachinePose, SeamEnd,
-    SeamFile, SeamPoint, SeamSighting, SeamTeachError, SeamTeaching, View,
+    CameraMachine, EndSighting, Follower, JogOperator, MachinePose, SeamEnd, SeamPoint, SeamSighting,
+    SeamTeachError, View,
 };
 
 /// Longest time for the pictures of a look.
@@ -27,27 +28,6 @@ const NO_MOVE: f64 = 1e-4;
 const NO_SLIDE_MOVE: f64 = 2e-3;
 /// Slides that are there come to rest for so long before a look \[s\].
 const SLIDES_SETTLE_S: f64 = 0.03;
-
-/// What is to be taught, and where it goes.
-#[derive(Debug)]
-pub struct SeamLesson {
-    /// Where to begin.
-    pub start: MachinePose,
-    /// What is drawn.
-    pub drawing: Option<Drawing>,
-    /// How to teach.
-    pub config: SeamTeaching,
-    /// Where the cameras look.
-    pub cameras: Cameras,
-    /// Points taught before.
-    pub points: Vec<SeamPoint>,
-    /// Where new points go.
-    pub file: Mutex<SeamFile>,
-    /// Whose they are.
-    pub head: Head,
-    /// The operator drives.
-    pub by_jog: bool,
-}
 
 impl Weld {
     /// Teaches the seams of `lesson`.
@@ -97,17 +77,6 @@ impl Weld {
         });
         Ok(())
     }
-}
-
-/// How a lesson came to its end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TaughtSeam {
-    /// Points in the file.
-    pub points: usize,
-    /// Why there are no more.
-    pub ended: Ended,
-    /// What is seen to begin the seam of each side at the first point, and how far that is after its drawing begins \[mm\].
-    pub begins: Option<([Option<SeamEnd>; SIDES], f64)>,
 }
 
 /// The machine of a session.

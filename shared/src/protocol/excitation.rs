@@ -39,7 +39,7 @@ pub struct Excitation {
 pub enum Excited {
     /// The command to the drive, behind the position loop.
     Command,
-    /// The reference of the position loop, without feed-forward.
+    /// The reference of the position loop, without feed-forward; of all motors of the axis alike.
     Reference,
 }
 

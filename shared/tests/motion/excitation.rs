@@ -273,6 +273,42 @@ fn nothing_else_moves_meanwhile_and_it_needs_a_machine_at_rest() {
     );
 }
 
+/// So that a gantry turns round as it does on a path; what one of its drives answers is measured beside the other.
+#[test]
+fn a_reference_moves_both_motors_of_a_gantry_and_a_command_only_its_own() {
+    let [x1, x2] = [0, 1];
+    for (excited, amplitude) in [(Excited::Reference, 0.8), (Excited::Command, 10.0)] {
+        let mut bench = bench();
+        let stood = bench.position;
+        bench.done(&Request::Excite(Excitation {
+            motor: x1 as u8,
+            excited,
+            amplitude,
+            from_hz: 2.0,
+            to_hz: 2.0,
+            ..ASKED
+        }));
+        let mut farthest = [0.0_f64; 2];
+        for _ in 0..30 {
+            bench.status();
+            bench.run_ms(50);
+            for motor in [x1, x2] {
+                farthest[motor] = farthest[motor].max((bench.position[motor] - stood[motor]).abs());
+            }
+        }
+        assert_eq!(bench.fault(), None, "{excited:?}");
+        // The skew trips at 0.3 mm.
+        assert!(farthest[x1] > 0.05, "{excited:?}: {farthest:?}");
+        match excited {
+            Excited::Reference => {
+                assert!((farthest[x1] - farthest[x2]).abs() < 2e-3, "{farthest:?}");
+                assert!(farthest[x1] > 0.5, "{farthest:?}");
+            }
+            Excited::Command => assert!(farthest[x2] < 0.5 * farthest[x1], "{farthest:?}"),
+        }
+    }
+}
+
 #[test]
 fn what_would_end_it_at_once_is_refused() {
     let mut bench = bench();

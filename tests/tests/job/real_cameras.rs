@@ -298,6 +298,7 @@ fn weld_outside(wire: Wire, told: Option<Arc<Deviation>>) -> (Ended, World) {
         calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
         kept: None,
         noted: None,
+        shown_every: None,
     };
     job.surroundings = Surroundings {
         cameras: CameraChoice::Images(Box::new(images), PictureChoice::Real(Arc::new(open))),

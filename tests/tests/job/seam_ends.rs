@@ -60,6 +60,7 @@ fn job_before<'a>(machine: &'a MachineFile, program: &'a Program, drawing: &Prog
         calibrations: cameras.calibrations(Path::new("")).unwrap(),
         kept: None,
         noted: None,
+        shown_every: None,
     };
     Job {
         surroundings: Surroundings {

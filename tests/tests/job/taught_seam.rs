@@ -240,6 +240,7 @@ fn a_seam_is_taught_and_welded_through_pictures_as_well_after_an_interruption() 
         calibrations: cameras.calibrations(Path::new("")).unwrap(),
         kept: None,
         noted: None,
+        shown_every: None,
     };
     let case = Case {
         cameras: CameraChoice::Images(Box::new(pictures), PictureChoice::Rendered(Box::default())),

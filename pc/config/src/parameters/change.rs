@@ -1,6 +1,6 @@
 //! What differs between two versions of a file.
 
-use super::list;
+use super::{Table, list};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -18,9 +18,16 @@ pub struct Change {
 /// The values that differ between `old` and `new`, in the order of `old`; what only `new` has comes last. How they are
 /// written, and comments, are no matter.
 pub fn changes(old: &str, new: &str) -> Vec<Change> {
-    let values = |text: &str| -> Vec<(String, String)> {
-        let parameters = list(text).into_iter().flat_map(|table| table.parameters);
-        parameters.map(|one| (one.key, one.value)).collect()
+    differing(&list(old), &list(new))
+}
+
+/// The same of what is listed.
+pub fn differing(old: &[Table], new: &[Table]) -> Vec<Change> {
+    let values = |tables: &[Table]| -> Vec<(String, String)> {
+        let parameters = tables.iter().flat_map(|table| &table.parameters);
+        parameters
+            .map(|one| (one.key.clone(), one.value.clone()))
+            .collect()
     };
     let (old, new) = (values(old), values(new));
     let mut news: BTreeMap<&str, &str> = new.iter().map(|(key, value)| (&**key, &**value)).collect();

@@ -63,11 +63,21 @@ impl Kind {
 
 /// All tables of `text` that have values, in its order; none of what is no TOML.
 pub fn list(text: &str) -> Vec<Table> {
+    listed(text, false)
+}
+
+/// The same, with each element of an array of numbers or of tables as a value of its own, called by its number from 0.
+pub fn list_elements(text: &str) -> Vec<Table> {
+    listed(text, true)
+}
+
+fn listed(text: &str, elements: bool) -> Vec<Table> {
     let Ok(document) = DeTable::parse(text) else {
         return Vec::new();
     };
     let mut walk = Walk {
         text,
+        elements,
         tables: Vec::new(),
     };
     walk.table("", document.get_ref(), String::new());
@@ -83,6 +93,8 @@ pub fn list(text: &str) -> Vec<Table> {
 
 struct Walk<'a> {
     text: &'a str,
+    /// Elements of arrays are listed, too.
+    elements: bool,
     tables: Vec<Table>,
 }
 
@@ -137,6 +149,17 @@ impl Walk<'_> {
             }
             return;
         }
+        if let DeValue::Array(inner) = value
+            && self.elements
+            && !inner.is_empty()
+            && (all_tables(inner) || all_numbers(inner))
+        {
+            for (number, element) in inner.iter().enumerate() {
+                let (key, span) = (joined(key, &number.to_string()), element.span());
+                self.value(&key, element.get_ref(), span.start, span, of);
+            }
+            return;
+        }
         let table = &mut self.tables[of.table];
         table.parameters.push(Parameter {
             name: key[table.name.len()..].trim_start_matches('.').to_owned(),
@@ -177,6 +200,11 @@ impl Walk<'_> {
 
 fn all_tables(elements: &toml::de::DeArray) -> bool {
     elements.iter().all(|element| element.get_ref().is_table())
+}
+
+fn all_numbers(elements: &toml::de::DeArray) -> bool {
+    let is_number = |value: &DeValue| matches!(value, DeValue::Integer(_) | DeValue::Float(_));
+    elements.iter().all(|element| is_number(element.get_ref()))
 }
 
 fn joined(table: &str, name: &str) -> String {

@@ -6,16 +6,19 @@
 
 mod change;
 mod edit;
+mod insert;
 mod list;
 mod range;
 mod shipped;
 mod unit;
 
-pub use change::{Change, changes, is_same};
+pub use change::{Change, changes, differing, is_same};
 pub use edit::{EditError, replace};
-pub use list::{Kind, Parameter, Table, list};
+pub use insert::{insert, remove};
+pub use list::{Kind, Parameter, Table, list, list_elements};
 pub use range::{Range, is_about, ranges};
 pub use shipped::{shipped, shipped_values};
+pub use unit::unit;
 
 #[cfg(test)]
 mod tests;

@@ -4,8 +4,8 @@ mod versions;
 
 pub use versions::Version;
 
-use anyhow::{Context, bail};
-use config::kept;
+use crate::edited::Edited;
+use anyhow::bail;
 use config::machine::{MachineError, MachineFile};
 use config::parameters::{
     Change, EditError, Parameter, Range, Table, changes, is_about, is_same, list, ranges, replace,
@@ -17,14 +17,10 @@ use std::path::{Path, PathBuf};
 /// See the module.
 #[derive(Debug)]
 pub struct Parameters {
-    file: PathBuf,
-    /// The text as it was loaded.
-    loaded: String,
-    /// The machine that it is, if it is one.
+    text: Edited,
+    /// The machine that it is as it was loaded, if it is one.
     machine: Option<MachineFile>,
-    /// The same with what was changed.
-    edited: String,
-    /// What is in `edited`.
+    /// What is in the text with the changes.
     tables: Vec<Table>,
     changes: Vec<Change>,
     refused: Option<MachineError>,
@@ -47,28 +43,25 @@ impl Parameters {
     /// # Errors
     /// A sentence: it cannot be read.
     pub fn open(file: &Path) -> anyhow::Result<Self> {
-        // What is written takes the place of the file itself, not of a link to it.
-        let file = file.canonicalize().with_context(|| cannot("read", file))?;
-        let loaded = std::fs::read_to_string(&file).with_context(|| cannot("read", &file))?;
+        let text = Edited::open("machine file", file)?;
+        let loaded = text.loaded().to_owned();
         let mut parameters = Self {
-            file,
+            text,
             machine: None,
-            edited: String::new(),
             tables: Vec::new(),
             changes: Vec::new(),
             refused: None,
             weakened: Vec::new(),
             shipped: shipped_values(&loaded),
-            loaded: loaded.clone(),
         };
+        parameters.machine = parameters.as_loaded();
         parameters.take(loaded);
-        parameters.machine = MachineFile::parse(&parameters.name(), &parameters.loaded).ok();
         Ok(parameters)
     }
 
     /// The file.
     pub fn file(&self) -> &Path {
-        &self.file
+        self.text.file()
     }
 
     /// All parameters with the changes, in the order of the file.
@@ -94,7 +87,7 @@ impl Parameters {
 
     /// Whether anything is changed; that may be comments alone.
     pub fn is_changed(&self) -> bool {
-        self.edited != self.loaded
+        self.text.is_changed()
     }
 
     /// Why the file cannot be used with the changes, by its reader.
@@ -128,7 +121,7 @@ impl Parameters {
     /// What the parameter called `key` may be, where all others are as they are.
     pub fn ranges(&self, key: &str) -> Vec<Range> {
         self.parameter(key)
-            .map_or_else(Vec::new, |parameter| ranges(&self.edited, parameter))
+            .map_or_else(Vec::new, |parameter| ranges(self.text.text(), parameter))
     }
 
     /// Has what was typed as the value of the parameter called `key`. Whether the machine can run with it is told by
@@ -148,7 +141,7 @@ impl Parameters {
             typed,
             |before| if is_same(before, typed) { before } else { typed },
         );
-        let text = replace(&self.edited, parameter, typed)?;
+        let text = replace(self.text.text(), parameter, typed)?;
         self.take(text);
         Ok(())
     }
@@ -168,12 +161,12 @@ impl Parameters {
 
     /// All is as it was loaded.
     pub fn discard(&mut self) {
-        self.take(self.loaded.clone());
+        self.take(self.text.loaded().to_owned());
     }
 
     /// Whether the file on the disk is another one than was loaded.
     pub fn is_stale(&self) -> bool {
-        std::fs::read_to_string(&self.file).ok().as_ref() != Some(&self.loaded)
+        self.text.is_stale()
     }
 
     /// Whether `machine`, which a program was planned for, is that of the file as it was loaded; what is in files of its own is no
@@ -196,35 +189,21 @@ impl Parameters {
         if let Some(error) = &self.refused {
             bail!("{error}");
         }
-        if !self.is_changed() {
-            bail!("nothing is changed");
-        }
-        if self.is_stale() {
-            bail!(
-                "{} has changed since it was loaded; it is not written over",
-                self.file.display()
-            );
-        }
-        let version = kept::keep_version(&self.file, &self.loaded)
-            .with_context(|| format!("cannot keep a version of {}", self.file.display()))?;
-        kept::replace(&self.file, &self.edited).with_context(|| cannot("write", &self.file))?;
-        self.loaded.clone_from(&self.edited);
-        self.machine = MachineFile::parse(&self.name(), &self.loaded).ok();
+        let version = self.text.write()?;
+        self.machine = self.as_loaded();
         Ok(Written {
             changes: std::mem::take(&mut self.changes),
             version,
         })
     }
 
-    /// What messages call the file.
-    fn name(&self) -> String {
-        let name = self.file.file_name().unwrap_or_default();
-        name.to_string_lossy().into_owned()
+    fn as_loaded(&self) -> Option<MachineFile> {
+        MachineFile::parse(&self.text.name(), self.text.loaded()).ok()
     }
 
     /// Has `text` as what is edited.
     fn take(&mut self, text: String) {
-        let read = MachineFile::parse(&self.name(), &text);
+        let read = MachineFile::parse(&self.text.name(), &text);
         let weak = |machine: &MachineFile| -> Vec<String> {
             let protections = machine.weak_protections();
             protections.iter().map(ToString::to_string).collect()
@@ -234,13 +213,9 @@ impl Parameters {
         self.weakened.retain(|told| !before.contains(told));
         self.refused = read.err();
         self.tables = list(&text);
-        self.changes = changes(&self.loaded, &text);
-        self.edited = text;
+        self.changes = changes(self.text.loaded(), &text);
+        self.text.set(text);
     }
-}
-
-fn cannot(what: &str, file: &Path) -> String {
-    format!("cannot {what} machine file {}", file.display())
 }
 
 #[cfg(test)]

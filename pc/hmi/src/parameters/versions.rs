@@ -1,7 +1,6 @@
 //! Versions of the machine file that are kept beside it.
 
-use super::{Parameters, cannot};
-use anyhow::Context;
+use super::Parameters;
 use config::kept;
 use config::parameters::changes;
 use std::path::{Path, PathBuf};
@@ -18,11 +17,11 @@ pub struct Version {
 impl Parameters {
     /// Versions that are kept beside the file, newest first.
     pub fn versions(&self) -> Vec<Version> {
-        let kept = kept::versions(&self.file).into_iter().rev();
+        let kept = kept::versions(self.file()).into_iter().rev();
         kept.filter_map(|(_, file)| {
             let text = std::fs::read_to_string(&file).ok()?;
             Some(Version {
-                differing: changes(&self.loaded, &text).len(),
+                differing: changes(self.text.loaded(), &text).len(),
                 file,
             })
         })
@@ -34,13 +33,12 @@ impl Parameters {
     /// # Errors
     /// A sentence: it cannot be read.
     pub fn restore(&mut self, file: &Path) -> anyhow::Result<()> {
-        let text = std::fs::read_to_string(file).with_context(|| cannot("read", file))?;
-        self.take(text);
+        self.take(self.text.read(file)?);
         Ok(())
     }
 
     /// Where what is in the file now will be kept.
     pub fn next_version(&self) -> PathBuf {
-        kept::next_version(&self.file)
+        self.text.next_version()
     }
 }

@@ -13,6 +13,7 @@ mod set_up;
 mod settings;
 mod teach;
 mod welds;
+mod writing;
 
 pub use ::view::look::Look;
 pub use ::view::screen::Page;

@@ -3,39 +3,26 @@
 use super::{Action, Station};
 use crate::commissioning::Commissioning;
 use crate::parameters::Parameters;
-use crate::running::{Machine, Outcome, Running, Task};
+use crate::running::{Machine, Outcome, Task};
 use anyhow::bail;
-use cam::along::Along;
-use commission::bidirectional_mm;
 use job::CircularTest;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Commissioning, as the station has it.
-#[derive(Debug, Default)]
-pub(super) struct Commissioned {
-    /// The job that runs is of it.
-    runs: bool,
-    /// How the last job ended.
-    last: Option<Result<Outcome, String>>,
-    /// How many have ended.
-    ended: u32,
-}
-
 impl Station {
     /// Whether the job that runs commissions the machine.
     pub fn is_commissioning(&self) -> bool {
-        self.commissioned.runs
+        self.commissioned.runs()
     }
 
     /// How the last job of commissioning ended: with a sentence if it could not begin, or if what came of it could not be kept.
     pub fn commissioned(&self) -> Option<&Result<Outcome, String>> {
-        self.commissioned.last.as_ref()
+        self.commissioned.last()
     }
 
     /// How many jobs of commissioning have ended.
     pub fn commissioned_jobs(&self) -> u32 {
-        self.commissioned.ended
+        self.commissioned.ended()
     }
 
     /// Measures these motors of the machine, by their indices, if it may.
@@ -89,39 +76,7 @@ impl Station {
     }
 
     fn commission(&mut self, task: Task) {
-        self.begin_record(Along::default());
-        (self.override_percent, self.last) = (100.0, None);
-        (self.commissioned.runs, self.commissioned.last) = (true, None);
-        self.running = Some(Running::start(task, self.place.clone(), self.stage.as_ref()));
-    }
-
-    /// Takes how a job ended, if that was of commissioning; otherwise gives it back.
-    pub(super) fn take_commissioned(
-        &mut self,
-        outcome: anyhow::Result<Outcome>,
-        now: Duration,
-    ) -> Option<anyhow::Result<Outcome>> {
-        if !std::mem::take(&mut self.commissioned.runs) {
-            return Some(outcome);
-        }
-        let outcome = outcome.map_err(|error| config::sentence(error.as_ref()));
-        match &outcome {
-            Err(error) => self.live.journal.alarm(now, error),
-            Ok(Outcome {
-                circle: Some((test, seen)),
-                ..
-            }) => {
-                let [there, back] = seen.figures.map(|figures| figures.contour_mm);
-                let both = bidirectional_mm(&seen.turns);
-                let told = format!(
-                    "{test}: at most {:.4} mm from the circle, G(b) {both:.4} mm",
-                    there.max(back)
-                );
-                self.live.journal.message(now, &told);
-            }
-            Ok(_) => {}
-        }
-        (self.commissioned.last, self.commissioned.ended) = (Some(outcome), self.commissioned.ended + 1);
-        None
+        self.begin_apart(task);
+        self.commissioned.begin();
     }
 }

@@ -19,7 +19,14 @@ impl Action {
             | Self::Back
             | Self::Override
             | Self::Off => Level::Operator,
-            Self::Home | Self::ByHand | Self::Jog | Self::Teach | Self::WorkOffsets => Level::Setter,
+            Self::Home
+            | Self::ByHand
+            | Self::Jog
+            | Self::Teach
+            | Self::Lesson
+            | Self::WorkOffsets
+            | Self::Tools
+            | Self::WeldData => Level::Setter,
             Self::Write | Self::Commission => Level::Engineer,
         }
     }

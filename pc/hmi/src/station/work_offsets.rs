@@ -32,9 +32,7 @@ impl Station {
                 self.send(Command::ByHand(ByHand::Block(block)), now);
             }
         }
-        if let Some(loaded) = self.loaded.take() {
-            self.load(loaded.program_file.clone(), loaded.drawn.from_line);
-        }
+        self.load_again();
         Ok(())
     }
 }

@@ -3,12 +3,14 @@
 mod access;
 mod bench;
 mod browser;
+mod cameras;
 mod chromium;
 mod commission;
 mod day;
 mod parameters;
 mod pictures;
 mod set_up;
+mod sets;
 mod teach;
 mod viewers;
 mod watching;

@@ -1,9 +1,11 @@
-//! Teaching a seam by places, planning it, and welding it.
+//! Teaching a seam by places, planning it, and welding it; teaching seams by the cameras.
 
 use crate::bench::{Bench, waits};
 use egui_kittest::kittest::Queryable;
 use hmi::screen::Page;
 use hmi::station::Station;
+use host_link::events::Phase;
+use std::path::Path;
 
 /// Taps a step of 10 mm, and waits until it is done.
 fn step(bench: &mut Bench, direction: &str) {
@@ -90,4 +92,80 @@ fn places_are_taken_taken_out_and_planned_and_the_seam_is_welded() {
     bench.tap("Take out");
     let kept = std::fs::read_to_string(folder.join("lap-joint-taught.csv.0001")).expect("kept");
     assert_eq!(kept, taught);
+}
+
+/// A part with seams of some 100 mm in `folder`.
+fn short_seams(folder: &Path) {
+    std::fs::create_dir(folder).expect("a folder");
+    for side in [1, 2] {
+        let drawn =
+            std::fs::read_to_string(format!("../../programs/t-seam-400-seam{side}.csv")).expect("a seam");
+        let short: Vec<&str> = drawn.lines().take(22).collect();
+        std::fs::write(folder.join(format!("seam{side}.csv")), short.join("\n")).expect("written");
+    }
+    let part =
+        "[t-seam]\nseam_1 = \"seam1.csv\"\nseam_2 = \"seam2.csv\"\nspeed_m_min = 5.0\npower_w = 2000.0\n";
+    std::fs::write(folder.join("short.toml"), part).expect("written");
+}
+
+/// How the seams of that part deviate, on simulated boards.
+fn deviation(folder: &Path) {
+    let file = "../../programs/t-seam-400-deviation.csv";
+    std::fs::copy(file, folder.join("short-deviation.csv")).expect("copied");
+}
+
+#[test]
+fn the_cameras_are_taught_seams_in_two_lessons_and_the_program_is_planned() {
+    let mut bench = Bench::new();
+    let folder = bench.folder.path().join("parts");
+    short_seams(&folder);
+    bench.station().programs.clone_from(&folder);
+    let taught = folder.join("short-taught.csv");
+
+    bench.open(Page::Teach);
+    bench.tap("Part…");
+    bench.tap("short.toml");
+    assert!(bench.says("0 points in short-taught.csv"));
+    bench.tap("Teach…");
+    bench.tap("Teach now");
+    assert!(bench.says("short-deviation.csv is missing") && !bench.station().is_running());
+    deviation(&folder);
+    bench.tap("Teach…");
+    bench.tap("Teach now");
+    bench.until("two points are taught", |station| {
+        station.live.phase == Some(Phase::TeachingSeam { number: 3 })
+    });
+    assert!(!bench.station().runs_program());
+    bench.tap("End after this point");
+    bench.until("the lesson is over", |station| !station.is_running());
+    bench.harness.run_steps(2);
+    assert!(bench.says("ended by the operator"));
+    assert!(bench.says("3 points in short-taught.csv"));
+
+    bench.tap("Teach…");
+    assert!(bench.says("It goes on after point 3."));
+    bench.tap("Teach now");
+    bench.until("it goes on", |station| {
+        station.live.phase == Some(Phase::TeachingSeam { number: 5 })
+    });
+    assert!(bench.says("4 points in short-taught.csv"));
+    bench.pictures("teach-seams", |_| {});
+    bench.until("the lesson is over", |station| !station.is_running());
+    bench.harness.run_steps(2);
+    assert!(bench.says("the seam is taught as far as it is drawn"));
+    let points = std::fs::read_to_string(&taught).expect("written at once");
+
+    bench.tap("Plan program");
+    bench.until("it is loaded", |station| {
+        !station.is_loading() && station.loaded().is_some()
+    });
+    assert_eq!(bench.station().refused(), None);
+    let program = std::fs::read_to_string(folder.join("short.ngc")).expect("planned");
+    assert!(program.contains("G43.4"), "{program}");
+
+    bench.tap("Begin anew…");
+    bench.tap("Take out");
+    assert!(bench.says("0 points in short-taught.csv"));
+    let kept = std::fs::read_to_string(folder.join("short-taught.csv.0001")).expect("kept");
+    assert_eq!(kept, points);
 }

@@ -53,6 +53,9 @@ pub struct ImageCameras {
     /// A camera (0 or 1) whose pictures are noted, and where. Nothing else is wanted then: those of the other one are not
     /// measured, nor are its own while nobody asks for ends.
     pub noted: Option<(usize, SightingLog)>,
+    /// Where pictures are only shown to somebody: at most one is looked at in so long, and none is waited for, be it of a simulated
+    /// camera.
+    pub shown_every: Option<Duration>,
 }
 
 /// The cameras of all sides.
@@ -69,6 +72,7 @@ pub struct Images {
     ends: bool,
     /// Time goes on while pictures are waited for.
     in_real_time: bool,
+    shown: Option<Shown>,
 }
 
 /// One camera.
@@ -184,7 +188,21 @@ impl Images {
             given_up: 0,
             ends: false,
             in_real_time: false,
+            shown: of.shown_every.map(Shown::every),
         })
+    }
+
+    /// Whether answers are waited for, as they are due.
+    fn waits(&self) -> bool {
+        self.source.is_simulated() && self.shown.is_none()
+    }
+
+    /// Whether nobody looks at the pictures of a strobe at this time \[µs\].
+    fn passes_over(&mut self, strobe_us: u64) -> bool {
+        let is_busy = self.sides.iter().any(Side::is_looking);
+        self.shown
+            .as_mut()
+            .is_some_and(|shown| is_busy || !shown.is_due(strobe_us))
     }
 
     /// How far a camera moved since the last capture; `None` if that is not known, or too far to see the same place.
@@ -253,6 +271,7 @@ impl SeamCameras for Images {
     fn strobe(&mut self, capture: Capture, strobe_us: u64, pose: Option<Pose>) {
         let delay_s = self.calibrations.map(|calibration| calibration.delay_s());
         let before_us = self.last.as_ref().map(|(.., us)| *us);
+        let passed_over = self.passes_over(strobe_us);
         for side in self.heads.sides() {
             let moved = pose.and_then(|pose| self.moved(side, &pose, &capture));
             let late = self.source.late_us(capture.number, side);
@@ -267,7 +286,7 @@ impl SeamCameras for Images {
                 // One after the other.
                 due_us: due_us.max(before),
                 told: false,
-                wanted: this.worker.wants(self.ends),
+                wanted: this.worker.wants(self.ends) && !passed_over,
             });
             let goes_on = moved.and_then(|moved| {
                 let period_us = strobe_us.checked_sub(before_us?).filter(|us| *us > 0)?;
@@ -280,6 +299,7 @@ impl SeamCameras for Images {
                 goes_on: goes_on.unwrap_or_default(),
                 moved,
                 ends: self.ends,
+                passed_over,
             });
         }
         self.last = pose.map(|pose| (pose, capture, strobe_us));
@@ -294,7 +314,7 @@ impl SeamCameras for Images {
     }
 
     fn next_due_us(&self) -> Option<u64> {
-        if !self.source.is_simulated() {
+        if !self.waits() {
             return None;
         }
         let due = |side: &Side| Some(side.waiting.front()?.due_us);
@@ -305,9 +325,10 @@ impl SeamCameras for Images {
         if self.source.is_simulated() {
             self.tell(at);
         }
+        let waits = self.waits();
         loop {
             for (side, camera) in self.sides.iter_mut().enumerate() {
-                let got = if self.source.is_simulated() {
+                let got = if waits {
                     camera.wait(at.now_us)
                 } else {
                     camera.poll()
@@ -349,7 +370,36 @@ impl SeamCameras for Images {
     }
 }
 
+/// Pictures that are only shown.
+struct Shown {
+    every_us: u64,
+    /// When the next one is looked at, by the motion board's clock \[µs\].
+    next_us: u64,
+}
+
+impl Shown {
+    fn every(period: Duration) -> Self {
+        Self {
+            every_us: period.as_micros() as u64,
+            next_us: 0,
+        }
+    }
+
+    fn is_due(&mut self, now_us: u64) -> bool {
+        let is_due = now_us >= self.next_us;
+        if is_due {
+            self.next_us = now_us + self.every_us;
+        }
+        is_due
+    }
+}
+
 impl Side {
+    /// Whether a picture that somebody looks at has no answer yet.
+    fn is_looking(&self) -> bool {
+        self.waiting.iter().any(|waiting| waiting.wanted)
+    }
+
     /// Holds the next answer if it is due, and waits for it then.
     fn wait(&mut self, now_us: u64) -> Result<(), WorkerError> {
         let due = |waiting: &Waiting| waiting.told && waiting.due_us <= now_us;

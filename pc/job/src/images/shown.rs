@@ -2,9 +2,9 @@
 
 use super::worker::MeasuredStrobe;
 use camera::Picture;
-use host_link::events::{Event, Events, MeasuredPicture, SeamInPicture};
+use host_link::events::{Event, Events, Focus, MeasuredPicture, SeamInPicture};
 use std::sync::Arc;
-use vision::{Corner, EDGE_ROWS_MM, Form, Measured, Observation, Optics};
+use vision::{Corner, EDGE_ROWS_MM, Form, Measured, Observation, Optics, Report, Status};
 
 /// Tells who is interested of `picture` and of what is seen in it.
 pub(super) fn tell(events: &Events, side: usize, picture: &Picture, seen: &MeasuredStrobe, optics: &Optics) {
@@ -21,6 +21,9 @@ pub(super) fn tell(events: &Events, side: usize, picture: &Picture, seen: &Measu
         seam: seen
             .observation
             .and_then(|observation| seam(&observation, optics)),
+        focus: seen
+            .observation
+            .map_or(Focus::Nothing, |observation| focus(&observation.report)),
     })));
 }
 
@@ -35,6 +38,18 @@ fn seam(observation: &Observation, optics: &Optics) -> Option<SeamInPicture> {
         quality: seam.quality,
         edges: edges(observation.report.measured.as_ref()?, optics)?,
     })
+}
+
+fn focus(report: &Report) -> Focus {
+    match (report.measured, report.status) {
+        (Some(band), _) => Focus::Band {
+            contrast: band.contrast,
+            defocus_mm: report.seam().map(|seam| seam.height_mm),
+        },
+        (None, Status::TooHigh) => Focus::TooHigh,
+        (None, Status::TooLow) => Focus::TooLow,
+        (None, _) => Focus::Nothing,
+    }
 }
 
 /// Where the edges of the seam are in the picture; `None` where what was measured lies in no picture of that camera.

@@ -3,7 +3,10 @@
 use super::*;
 use camera::{Arrival, Camera, CameraError, Folder, Picture, PictureQueue, PictureWriter};
 use config::machine::MachineFile;
+use host_link::geometry::MachineGeometry;
+use host_link::record::MachinePosition;
 use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex};
 use world::{FieldOfView, RenderedCamera, RenderedWorld, SceneFile, View, ViewForm};
 
 /// Cameras that see nothing.
@@ -31,6 +34,7 @@ fn images() -> Images {
         calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
         kept: None,
         noted: None,
+        shown_every: None,
     };
     Images::begin(&of, Box::new(Blind), &unit, heads).unwrap()
 }
@@ -118,6 +122,7 @@ fn seen_by(
             moved: Some(way),
             goes_on,
             ends: false,
+            passed_over: false,
         });
         tell(capture);
         worker.wait(PATIENCE).unwrap()
@@ -232,4 +237,92 @@ fn what_was_kept_is_measured_again_to_the_same_figures() {
     let measured = first.iter().filter(|seen| seen.measurement.is_some()).count();
     assert!(measured > 40, "{measured}");
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Simulated cameras that lose every picture at once, or never answer; which of them were wanted.
+#[derive(Clone, Default)]
+struct Asked {
+    answers: bool,
+    strobed: VecDeque<u32>,
+    wanted: Arc<Mutex<Vec<u32>>>,
+}
+
+impl Camera for Asked {
+    fn strobed(&mut self, capture: u32, _time_us: u64) {
+        self.strobed.push_back(capture);
+    }
+
+    fn next(&mut self, _timeout: Duration, _picture: &mut Picture) -> Result<Arrival, CameraError> {
+        let next = self.strobed.pop_front().filter(|_| self.answers);
+        Ok(next.map_or(Arrival::Nothing, |capture| Arrival::Lost { capture }))
+    }
+}
+
+impl PictureSource for Asked {
+    fn open(&mut self, _side: usize) -> Result<Box<dyn Camera>, CameraError> {
+        Ok(Box::new(self.clone()))
+    }
+
+    fn is_simulated(&self) -> bool {
+        true
+    }
+
+    fn tell(
+        &mut self,
+        side: usize,
+        capture: &Capture,
+        _at: Option<(&MachineGeometry, &MachinePosition)>,
+        wanted: bool,
+    ) {
+        if wanted && side == 0 {
+            self.wanted.lock().unwrap().push(capture.number);
+        }
+    }
+}
+
+/// The captures, 5 ms apart, whose pictures anybody looks at where they are only shown, every 100 ms. Where the camera
+/// `answers`, the next strobe waits for it.
+fn shown(answers: bool) -> Vec<u32> {
+    let text = include_str!("../../../../machines/dual-beam-gantry.toml");
+    let file = MachineFile::parse("m.toml", text).unwrap();
+    let machine = MachineGeometry::build(&file.motion).unwrap();
+    let unit = file.tracking.unwrap();
+    let of = ImageCameras {
+        calibrations: std::array::from_fn(|side| unit.cameras.nominal(side)),
+        kept: None,
+        noted: None,
+        shown_every: Some(Duration::from_millis(100)),
+    };
+    let source = Asked {
+        answers,
+        ..Asked::default()
+    };
+    let wanted = Arc::clone(&source.wanted);
+    let mut images = Images::begin(&of, Box::new(source), &unit, unit.board.heads().unwrap()).unwrap();
+    for number in 0..=60 {
+        let strobe_us = 5_000 * u64::from(number);
+        images.strobe(capture(number, 0.0, 0.0), strobe_us, None);
+        loop {
+            // Long after it was due: whoever waited for it would wait here.
+            let at = Moment {
+                machine: &machine,
+                now_us: strobe_us + 10_000_000,
+                position: &|_| None,
+            };
+            assert!(images.answer(at).unwrap().is_none());
+            if !answers || images.sides.iter().all(|side| side.waiting.is_empty()) {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        assert_eq!(images.next_due_us(), None);
+    }
+    wanted.lock().unwrap().clone()
+}
+
+#[test]
+fn pictures_that_are_only_shown_are_thinned_and_never_waited_for() {
+    assert_eq!(shown(true), [0, 20, 40, 60]);
+    // One that does not come keeps others from being made, and nobody from anything.
+    assert_eq!(shown(false), [0]);
 }

@@ -31,6 +31,8 @@ pub(super) struct Strobe {
     pub goes_on: Moved,
     /// Whether it is asked where the seam ends in its picture.
     pub ends: bool,
+    /// Nobody looks at its picture, nor is it shown.
+    pub passed_over: bool,
 }
 
 /// The result of one strobe.
@@ -257,7 +259,7 @@ impl Work {
             // A camera that never answered a strobe has lost its picture.
             while let Some(strobe) = self.waiting.pop_front() {
                 self.note(strobe.moved);
-                let arrived = strobe.capture == capture && arrival == Arrival::Picture;
+                let arrived = strobe.capture == capture && arrival == Arrival::Picture && !strobe.passed_over;
                 let seen = if arrived {
                     self.look(at, &strobe)?
                 } else {

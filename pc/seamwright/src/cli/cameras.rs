@@ -75,6 +75,7 @@ impl CameraArgs {
                     calibrations: unit.cameras.calibrations(folder)?,
                     kept,
                     noted: None,
+                    shown_every: None,
                 };
                 let source = source(boards, &unit.cameras, self.scene.as_deref())?;
                 Ok(CameraChoice::Images(Box::new(images), source))

@@ -6,24 +6,18 @@ use super::read_program;
 use crate::console::outln;
 use crate::terminal::Operator;
 use anyhow::{Context, anyhow, bail};
-use cam::path::{Planner, Tip};
+use cam::path::Tip;
 use clap::Args;
 use config::machine::MachineFile;
-use dual_beam::DualBeamPlan;
-use job::{Job, JobError, Names, SeamLesson, TaughtSeam, Work};
+use job::{Job, LessonOptions, Names, SeamLesson, Work};
 use nc::{Options, Program, interpret};
 use parts::PartFile;
-use shared::io::{SIDES, SLIDES};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
-use std::sync::{Arc, Mutex};
-use teach::seam::{Cameras, Drawing, Ended, Head, MachinePose, SeamEnd, SeamFile};
+use std::sync::Arc;
 use world::Deviation;
 use world::{Surroundings, Workpiece};
-
-/// A seam that ends more than this before its drawing does was lost \[mm\].
-const ENDS_EARLY: f64 = 5.0;
 
 /// What only seams are taught with.
 #[derive(Debug, Args)]
@@ -79,15 +73,6 @@ impl TipPose {
     }
 }
 
-/// What the part and its drawing say.
-struct Lesson {
-    start: MachinePose,
-    drawing: Option<Drawing>,
-    cameras: Cameras,
-    /// The program of the drawing, to which a simulated seam belongs.
-    drawn: Option<Program>,
-}
-
 impl SeamArgs {
     /// Refuses what a panel is not taught with.
     pub fn refuse(&self) -> anyhow::Result<()> {
@@ -124,39 +109,25 @@ impl SeamArgs {
             .t_seam()
             .ok_or_else(|| anyhow!("the part has no seams to teach"))?;
         let name = |path: &Path| path.display().to_string();
-        let prepared = self
-            .prepare(machine, part)
-            .with_context(|| format!("part {}", name(part.path())))?;
         let deviation = self.seam.as_deref().map(Deviation::read).transpose()?;
+        let drawn = self
+            .drawn(machine, part)
+            .with_context(|| format!("part {}", name(part.path())))?;
         let output = output_of(output, part, seam.taught())?;
-        let head = Head {
-            machine: machine.name.clone(),
-            part: part
-                .path()
-                .file_stem()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned(),
+        let options = LessonOptions {
+            from: self.from.map(|from| from.tip()),
+            restart: self.restart,
+            by_jog: self.jog,
         };
-        let opened = SeamFile::open(&output, &head, self.restart)?;
-        opened.notes.iter().for_each(|note| outln!("{note}"));
-        if !opened.points.is_empty() {
+        let (lesson, notes) = SeamLesson::of(machine, part, &output, &options)?;
+        notes.iter().for_each(|note| outln!("{note}"));
+        if !lesson.points.is_empty() {
             outln!(
                 "{}: continues after point {}",
                 output.display(),
-                opened.points.len()
+                lesson.points.len()
             );
         }
-        let lesson = SeamLesson {
-            start: prepared.start,
-            drawing: prepared.drawing,
-            config: *seam.teaching(),
-            cameras: prepared.cameras,
-            points: opened.points,
-            file: Mutex::new(opened.file),
-            head,
-            by_jog: self.jog,
-        };
         let cameras = self.eyes.choose(machine, machine_path, &boards.choice)?;
         let keepers = self.eyes.keep(&cameras)?;
         let job = Job {
@@ -167,7 +138,7 @@ impl SeamArgs {
             from_line: None,
             surroundings: Surroundings {
                 seam: deviation.map(Arc::new),
-                drawing: prepared.drawn.map(Arc::new),
+                drawing: drawn.map(Arc::new),
                 cameras,
                 seed,
                 mounts: boards.mounts(machine)?,
@@ -188,7 +159,14 @@ impl SeamArgs {
         };
         keepers.end();
         match (ended.taught.seam, ended.error) {
-            (Some(taught), None) => tell(&output, &taught),
+            (Some(taught), None) => {
+                outln!("{}: {} points", output.display(), taught.points);
+                match taught.told() {
+                    Ok(told) => told.iter().for_each(|sentence| outln!("  {sentence}")),
+                    Err(error) => return exit_code(Some(error)),
+                }
+                Ok(ExitCode::SUCCESS)
+            }
             (_, error) => {
                 outln!(
                     "{}: the points taught so far; the same command continues after them",
@@ -199,50 +177,16 @@ impl SeamArgs {
         }
     }
 
-    fn prepare(&self, machine: &MachineFile, part: &PartFile) -> anyhow::Result<Lesson> {
-        let unit = machine.tracking.as_ref();
-        let unit = unit.context("the machine has no cameras to teach a seam with")?;
-        anyhow::ensure!(
-            unit.board.sides().len() == SIDES,
-            "the machine has one camera, and a seam is taught with two"
-        );
-        let cameras = Cameras::of(unit)?;
-        let drawn = part.drawn(machine)?;
-        let (start, drawing) = self.start(machine, drawn.as_ref(), &cameras)?;
-        let program = match (&self.seam_of, drawn) {
-            (Some(file), _) => Some(read_program(file, machine, Options::default())?),
-            (None, Some(plan)) => Some(interpret(&plan.program, Options::default())?),
+    /// The program from which a simulated seam deviates.
+    fn drawn(&self, machine: &MachineFile, part: &PartFile) -> anyhow::Result<Option<Program>> {
+        match (&self.seam_of, part.drawn(machine)?) {
+            (Some(file), _) => Ok(Some(read_program(file, machine, Options::default())?)),
+            (None, Some(plan)) => Ok(Some(interpret(&plan.program, Options::default())?)),
             (None, None) if self.seam.is_some() => {
                 bail!("the part has no drawing that --seam could deviate from: name its program by --seam-of")
             }
-            (None, None) => None,
-        };
-        Ok(Lesson {
-            start,
-            drawing,
-            cameras,
-            drawn: program,
-        })
-    }
-
-    fn start(
-        &self,
-        machine: &MachineFile,
-        drawn: Option<&DualBeamPlan>,
-        cameras: &Cameras,
-    ) -> anyhow::Result<(MachinePose, Option<Drawing>)> {
-        let drawing = drawn.map(DualBeamPlan::drawing);
-        let start = match (self.from, drawn) {
-            (Some(from), _) => MachinePose {
-                pose: Planner::build(machine)?.pose(&from.tip()),
-                slides_mm: [0.0; SLIDES],
-            },
-            (None, Some(plan)) => plan.stance_before(cameras.heads.camera_lead()),
-            (None, None) => {
-                bail!("the part has no drawing, so the start is unknown: give it with --from")
-            }
-        };
-        Ok((start, drawing))
+            (None, None) => Ok(None),
+        }
     }
 }
 
@@ -256,83 +200,5 @@ pub(super) fn output_of(
         (Some(told), _) => Ok(told.to_owned()),
         (None, Some(taught)) => Ok(part.path().parent().unwrap_or(Path::new("")).join(taught)),
         (None, None) => bail!("where should the points be written? give --output FILE"),
-    }
-}
-
-/// Tells how a lesson ended.
-fn tell(output: &Path, taught: &TaughtSeam) -> anyhow::Result<ExitCode> {
-    outln!("{}: {} points", output.display(), taught.points);
-    if let Some((ends, after)) = taught.begins {
-        outln!(
-            "  the seam begins {after:.2} mm after its drawing does: {}",
-            ends_of(&ends, "begins").unwrap_or_default()
-        );
-    }
-    match taught.ended {
-        Ended::Drawn => outln!("  the seam is taught as far as it is drawn"),
-        Ended::Operator => outln!("  ended by the operator; the same command continues after the last point"),
-        Ended::SeamEnds {
-            s_mm,
-            missing_mm,
-            seen,
-            ends,
-        } => match (ends_of(&ends, "ends"), missing_mm) {
-            (Some(how), Some(missing)) => {
-                outln!(
-                    "  the seam ends {s_mm:.2} mm from its beginning, {missing:.2} mm before its drawing does: {how}"
-                );
-            }
-            (Some(how), None) => outln!("  the seam ends {s_mm:.2} mm from its beginning: {how}"),
-            (None, Some(missing)) if missing > ENDS_EARLY => {
-                let side = match seen {
-                    [true, false] => "on side 2 only",
-                    [false, true] => "on side 1 only",
-                    _ => "on both sides",
-                };
-                return exit_code(Some(JobError::Teach(format!(
-                    "the seam is lost {s_mm:.1} mm from its beginning, {side}, {missing:.1} mm before its drawing ends: \
-                     if it does not end there, check what covers it and whether the light works; the same command continues \
-                     after the last point"
-                ))));
-            }
-            _ => outln!("  the seam ends {s_mm:.1} mm from its beginning"),
-        },
-    }
-    Ok(ExitCode::SUCCESS)
-}
-
-/// What is seen to begin or end the seam of each side; none if nothing is.
-fn ends_of(ends: &[Option<SeamEnd>; SIDES], verb: &str) -> Option<String> {
-    let said = |end: SeamEnd, sides: &str| match end {
-        SeamEnd::Plate => format!("a plate {verb} there on {sides}"),
-        SeamEnd::Tack => format!("the gap is closed there on {sides}, as by a tack"),
-    };
-    match *ends {
-        [None, None] => None,
-        [Some(first), Some(second)] if first == second => Some(said(first, "both sides")),
-        [Some(first), Some(second)] => Some(format!("{}, {}", said(first, "side 1"), said(second, "side 2"))),
-        [Some(end), None] => Some(said(end, "side 1")),
-        [None, Some(end)] => Some(said(end, "side 2")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_ends_each_side_is_said() {
-        let (plate, tack) = (Some(SeamEnd::Plate), Some(SeamEnd::Tack));
-        for (ends, said) in [
-            ([plate, plate], "a plate ends there on both sides"),
-            (
-                [plate, tack],
-                "a plate ends there on side 1, the gap is closed there on side 2, as by a tack",
-            ),
-            ([None, tack], "the gap is closed there on side 2, as by a tack"),
-        ] {
-            assert_eq!(ends_of(&ends, "ends").as_deref(), Some(said));
-        }
-        assert_eq!(ends_of(&[None; SIDES], "ends"), None);
     }
 }

@@ -1,6 +1,6 @@
 //! Pictures of the cameras as viewers get them: smaller, and as JPEG.
 
-use host_link::events::{MeasuredPicture, SeamInPicture};
+use host_link::events::{Focus, MeasuredPicture, SeamInPicture};
 use image::codecs::jpeg::{JpegDecoder, JpegEncoder};
 use image::imageops::{FilterType, resize};
 use image::{DynamicImage, GrayImage, ImageDecoder, ImageError};
@@ -84,6 +84,8 @@ impl SentPicture {
             columns: pixels.width() as usize,
             pixels: pixels.into_raw(),
             seam: self.seam,
+            // Viewers have no page that shows it.
+            focus: Focus::default(),
         })
     }
 }
@@ -120,6 +122,7 @@ mod tests {
                 quality: 0.9,
                 edges: [ends; 2],
             }),
+            focus: Focus::default(),
         }
     }
 

@@ -285,6 +285,10 @@ impl SimulatedBoards {
 }
 
 impl Boards for SimulatedBoards {
+    fn wait(&self) -> bool {
+        true
+    }
+
     fn request(&mut self, role: Role, request: &Request) -> Result<Response, LinkError> {
         let end_us = self.now_us + REQUEST_US;
         while self.step(end_us) {}

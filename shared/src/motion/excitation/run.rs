@@ -60,12 +60,13 @@ struct Running {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Added {
     pub motor: usize,
-    /// Place and speed on its way, which is that of all motors of the axis.
-    pub way: f64,
+    /// To the places of all motors of the axis, and to their speed on the way, which is fed forward.
+    pub place: f64,
     pub velocity: f64,
-    /// The chirp, on the reference and on the command.
-    pub reference: f64,
+    /// To the command of the one that is measured.
     pub command: f64,
+    /// Place on the way.
+    way: f64,
 }
 
 impl Running {
@@ -80,10 +81,10 @@ impl Running {
         let (way, velocity) = order.way.at(self.tick);
         Added {
             motor: order.motor,
-            way,
+            place: way + order.reference * value,
             velocity,
-            reference: order.reference * value,
             command: order.command * value,
+            way,
         }
     }
 }
@@ -96,8 +97,7 @@ impl Added {
         if MOTOR_AXIS[motor] != MOTOR_AXIS[self.motor] {
             return (0.0, 0.0);
         }
-        let own = if motor == self.motor { self.reference } else { 0.0 };
-        (self.way + own, self.velocity)
+        (self.place, self.velocity)
     }
 }
 

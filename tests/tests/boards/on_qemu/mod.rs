@@ -3,6 +3,7 @@
 
 mod by_hand;
 mod failures;
+mod long;
 mod marks;
 mod panel;
 mod programs;

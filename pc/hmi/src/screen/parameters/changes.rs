@@ -1,7 +1,7 @@
 //! What is changed and not written yet, and what can be done with it.
 
 use super::{Over, ParametersPage};
-use crate::screen::{View, access, title};
+use crate::screen::{View, access, title, writing};
 use crate::station::{Action, Station};
 use crate::texts::Text;
 use eframe::egui::{Button, Color32, Label, RichText, ScrollArea, Ui};
@@ -46,7 +46,7 @@ impl ParametersPage {
                 for (text, colour) in told {
                     ui.add(Label::new(RichText::new(text).size(15.0).color(colour)).wrap());
                 }
-                list(ui, view, self);
+                writing::changes(ui, view, parameters.changes(), parameters.is_changed());
             });
         let mut asked = None;
         ui.horizontal(|ui| {
@@ -83,23 +83,6 @@ impl ParametersPage {
             parameters.discard();
         }
         self.choose_again();
-    }
-}
-
-/// The changes, a line each.
-pub(super) fn list(ui: &mut Ui, view: &View, page: &ParametersPage) {
-    let words = view.words;
-    let Some(parameters) = &page.opened else { return };
-    if parameters.changes().is_empty() {
-        let none = if parameters.is_changed() {
-            Text::OnlyComments
-        } else {
-            Text::NoChanges
-        };
-        ui.label(RichText::new(words.say(none)).color(view.theme.faint));
-    }
-    for change in parameters.changes() {
-        ui.add(Label::new(words.change(change)).wrap());
     }
 }
 

@@ -1,9 +1,9 @@
 //! One parameter: what the file and its reader say of it, and a field to change it.
 
 use super::ParametersPage;
-use crate::screen::View;
+use crate::screen::{View, writing};
 use crate::texts::Text;
-use config::parameters::{EditError, Kind, Range};
+use config::parameters::{Kind, Range};
 use eframe::egui::{Button, Grid, Key, Label, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 impl ParametersPage {
@@ -46,11 +46,7 @@ impl ParametersPage {
                 }
             });
             if let Some(error) = chosen.error {
-                let text = words.say(match error {
-                    EditError::NotANumber => Text::NotANumber,
-                    EditError::NotWhole => Text::NotWhole,
-                    EditError::NotAValue => Text::NotAValue,
-                });
+                let text = words.say(writing::no_value(error));
                 ui.add(Label::new(RichText::new(text).color(view.theme.bad)).wrap());
             } else if parameters.is_refused_at(parameter)
                 && let Some(error) = parameters.refused()

@@ -1,58 +1,30 @@
 //! What opens over the page: the question before writing, and the versions that are kept.
 
-use super::changes::list;
 use super::{Over, ParametersPage};
 use crate::screen::View;
+use crate::screen::writing::{self, Answer, BUTTON, LIST, WIDTH, name};
 use crate::station::Station;
 use crate::texts::Text;
 use config::sentence;
-use eframe::egui::{Button, Color32, Id, Label, Modal, RichText, ScrollArea, Ui};
+use eframe::egui::{Button, Id, Label, Modal, RichText, ScrollArea, Ui};
 use std::path::Path;
-
-/// Size of a button \[points\].
-const BUTTON: [f32; 2] = [200.0, 60.0];
-/// Width of what opens \[points\].
-const WIDTH: f32 = 640.0;
-/// Height of a list in it \[points\].
-const LIST: f32 = 300.0;
 
 impl ParametersPage {
     /// The question before writing: what will be another value, and what becomes weaker by it.
     pub(super) fn ask_to_write(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
-        let words = view.words;
         let Some(parameters) = &self.opened else { return };
-        let (mut write, mut cancel) = (false, false);
-        let modal = Modal::new(Id::unique("write")).show(ui.ctx(), |ui| {
-            ui.set_width(WIDTH);
-            ui.heading(words.with(Text::WriteTitle, &[&name(parameters.file())]));
-            ui.add_space(8.0);
-            ScrollArea::vertical().max_height(LIST).show(ui, |ui| {
-                list(ui, view, self);
-                for weakened in parameters.weakened() {
-                    let text = words.with(Text::Weakened, &[weakened]);
-                    ui.add(Label::new(RichText::new(text).color(view.theme.doubt)).wrap());
-                }
-            });
-            ui.add_space(8.0);
-            let version = name(&parameters.next_version());
-            ui.add(Label::new(words.with(Text::WriteKeeps, &[&version])).wrap());
-            ui.add(Label::new(words.say(Text::WriteThen)).wrap());
-            ui.add_space(12.0);
-            ui.horizontal(|ui| {
-                let text = RichText::new(words.say(Text::WriteNow))
-                    .size(20.0)
-                    .color(Color32::BLACK);
-                let button = Button::new(text).fill(view.theme.doubt).min_size(BUTTON.into());
-                write = ui.add(button).clicked();
-                cancel = ui
-                    .add(Button::new(words.say(Text::Cancel)).min_size(BUTTON.into()))
-                    .clicked();
-            });
+        let version = parameters.next_version();
+        let answer = writing::ask(ui, view, parameters.file(), &version, |ui| {
+            writing::changes(ui, view, parameters.changes(), parameters.is_changed());
+            for weakened in parameters.weakened() {
+                let text = view.words.with(Text::Weakened, &[weakened]);
+                ui.add(Label::new(RichText::new(text).color(view.theme.doubt)).wrap());
+            }
         });
-        if write {
+        if answer == Answer::Write {
             self.write(view, station);
         }
-        if write || cancel || modal.should_close() {
+        if answer != Answer::Nothing {
             self.over = Over::Nothing;
         }
     }
@@ -117,12 +89,4 @@ impl ParametersPage {
         }
         self.choose_again();
     }
-}
-
-/// The name of a file without its folder.
-fn name(file: &Path) -> String {
-    file.file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
 }

@@ -12,7 +12,6 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
     let (Some(machine), Some(motion)) = (station.by_hand(), &station.live.motion) else {
         return;
     };
-    title(ui, view, view.words.say(Text::References));
     let homing = motion.state == State::Homing;
     let fitted = (0..MOTORS).filter(|motor| machine.is.motion.motors[*motor].is_some());
     let motors = fitted.map(|motor| {
@@ -41,6 +40,17 @@ pub(super) fn show(ui: &mut Ui, view: &View, station: &Station) {
         });
         all.extend(slides);
     }
+    if all.iter().all(|(_, found)| *found == Found::Yes) {
+        // One line: what is below needs the room.
+        let text = format!(
+            "{}: {} OK",
+            view.words.say(Text::References),
+            of(&all, Found::Yes)
+        );
+        ui.label(RichText::new(text).size(13.0).color(view.theme.good));
+        return;
+    }
+    title(ui, view, view.words.say(Text::References));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 18.0;
         for (name, found) in &all {

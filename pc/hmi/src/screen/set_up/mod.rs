@@ -1,13 +1,17 @@
-//! The page for setting up: drives and homing, positions, jogging, blocks by hand.
+//! The page for setting up: drives and homing, positions, jogging, blocks by hand, work offsets, tools and weld data.
 
 mod block;
+mod cameras;
 mod homing;
+mod pad;
 mod positions;
+mod sets;
 mod work_offsets;
 
 use super::{View, access, bare, jog, title};
 use crate::station::{Action, Station};
 use crate::texts::Text;
+use config::sets::Sets;
 use eframe::egui::{self, Button, Color32, Id, Label, Modal, RichText, Ui};
 use host_link::{ByHand, Command};
 
@@ -17,6 +21,8 @@ const LEFT: f32 = 428.0;
 const BLOCK: f32 = 210.0;
 /// Size of a large button \[points\].
 const LARGE: [f32; 2] = [196.0, 60.0];
+/// Size of what opens a dialog \[points\].
+const DATA: [f32; 2] = [128.0, 44.0];
 
 /// What the page remembers between two frames.
 #[derive(Default)]
@@ -24,8 +30,33 @@ pub(in crate::screen) struct SetUpPage {
     block: block::Entry,
     /// The question before homing is open.
     asks: bool,
-    /// Work offsets are being set, or why they cannot be.
-    offsets: Option<Result<work_offsets::Dialog, String>>,
+    /// What is being set, or why it cannot be.
+    data: Option<Result<Data, String>>,
+    cameras: cameras::Cameras,
+}
+
+/// What is set in a dialog of its own.
+enum Data {
+    WorkOffsets(work_offsets::Dialog),
+    Sets(sets::Dialog),
+}
+
+impl Data {
+    fn open(action: Action, station: &Station) -> Result<Self, String> {
+        match action {
+            Action::Tools => sets::Dialog::open(Sets::Tools, station).map(Self::Sets),
+            Action::WeldData => sets::Dialog::open(Sets::WeldData, station).map(Self::Sets),
+            _ => work_offsets::Dialog::open(station).map(Self::WorkOffsets),
+        }
+    }
+
+    /// Whether it stays open.
+    fn show(&mut self, ui: &mut Ui, view: &View, station: &mut Station) -> bool {
+        match self {
+            Self::WorkOffsets(dialog) => dialog.show(ui, view, station),
+            Self::Sets(dialog) => dialog.show(ui, view, station),
+        }
+    }
 }
 
 impl SetUpPage {
@@ -37,9 +68,16 @@ impl SetUpPage {
                 self.drives(ui, view, station);
                 ui.add_space(6.0);
                 positions::show(ui, view, station);
-                self.offsets(ui, view, station);
+                self.data(ui, view, station);
                 ui.add_space(6.0);
                 homing::show(ui, view, station);
+                if station
+                    .by_hand()
+                    .is_some_and(|machine| machine.is.tracking.is_some())
+                {
+                    ui.add_space(6.0);
+                    self.cameras.show(ui, view, &station.live);
+                }
             });
         bare(egui::Panel::bottom("block"))
             .exact_size(BLOCK)
@@ -53,21 +91,40 @@ impl SetUpPage {
         if self.asks {
             self.ask(ui, view, station);
         }
-        if let Some(Ok(dialog)) = &mut self.offsets
-            && !dialog.show(ui, view, station)
+        if let Some(Ok(data)) = &mut self.data
+            && !data.show(ui, view, station)
         {
-            self.offsets = None;
+            self.data = None;
         }
     }
 
-    fn offsets(&mut self, ui: &mut Ui, view: &View, station: &Station) {
-        let button = Button::new(view.words.say(Text::WorkOffsets)).min_size([LARGE[0], 44.0].into());
-        let may = station.may(Action::WorkOffsets, view.now);
-        if ui.add_enabled(may, button).clicked() {
-            self.offsets = Some(work_offsets::Dialog::open(station));
+    /// What opens work offsets, tools and weld data.
+    fn data(&mut self, ui: &mut Ui, view: &View, station: &Station) {
+        ui.horizontal(|ui| {
+            for (action, text, is_there) in [
+                (Action::WorkOffsets, Text::WorkOffsets, true),
+                (Action::Tools, Text::Tools, true),
+                (
+                    Action::WeldData,
+                    Text::WeldData,
+                    station.file_of(Sets::WeldData).is_some(),
+                ),
+            ] {
+                let button = Button::new(view.words.say(text)).min_size(DATA.into());
+                let may = is_there && station.may(action, view.now);
+                if ui.add_enabled(may, button).clicked() {
+                    self.data = Some(Data::open(action, station));
+                }
+            }
+        });
+        if station.by_hand().is_some() && station.allows(Action::Tools) {
+            let text = RichText::new(view.words.say(Text::ToolsWithDrivesOff)).size(14.0);
+            ui.add(Label::new(text.color(view.theme.faint)).wrap());
         }
-        if let Some(Err(error)) = &self.offsets {
-            ui.add(Label::new(RichText::new(error).color(view.theme.bad)).wrap());
+        let refused = station.refused().map(str::to_owned);
+        let failed = self.data.as_ref().and_then(|data| data.as_ref().err().cloned());
+        for text in failed.into_iter().chain(refused) {
+            ui.add(Label::new(RichText::new(text).color(view.theme.bad)).wrap());
         }
     }
 

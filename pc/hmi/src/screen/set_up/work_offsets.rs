@@ -1,19 +1,16 @@
 //! The work offsets: origins of coordinate systems, as values or by where the tip stands.
 
+use super::pad;
 use crate::screen::View;
 use crate::station::{Action, Station};
 use crate::texts::Text;
 use config::sentence;
 use config::work_offsets::{MOST, System, WorkOffset, WorkOffsets};
-use eframe::egui::{Button, Color32, Grid, Id, Label, Modal, RichText, TextEdit, TextStyle, Ui, vec2};
+use eframe::egui::{Button, Color32, Grid, Id, Label, Modal, RichText, Ui, vec2};
 use shared::io::{AXES, AXIS_NAMES};
 
 /// Width of the dialog \[points\].
 const WIDTH: f32 = 900.0;
-/// Size of a key of the pad \[points\].
-const KEY: [f32; 2] = [76.0, 52.0];
-/// Size of what sets the value that is chosen \[points\].
-const SETS: [f32; 2] = [3.0 * KEY[0] + 2.0 * 8.0, 52.0];
 /// Size of a coordinate system \[points\].
 const SYSTEM: [f32; 2] = [90.0, 44.0];
 /// Size of a value \[points\].
@@ -73,7 +70,7 @@ impl Dialog {
             ui.add_space(8.0);
             let tip = tip(station);
             ui.horizontal_top(|ui| {
-                ui.allocate_ui(vec2(WIDTH - SETS[0] - 24.0, 0.0), |ui| {
+                ui.allocate_ui(vec2(WIDTH - pad::WIDTH - 24.0, 0.0), |ui| {
                     ui.vertical(|ui| self.values(ui, view, station, tip.as_ref()));
                 });
                 ui.add_space(40.0);
@@ -157,46 +154,23 @@ impl Dialog {
 
     /// A value for what is chosen.
     fn pad(&mut self, ui: &mut Ui, view: &View, tip: Option<&[f64; AXES]>) {
-        let words = view.words;
-        let label = ui.label(words.say(Text::Value));
-        let field = TextEdit::singleline(&mut self.typed)
-            .font(TextStyle::Monospace)
-            .desired_width(SETS[0] - 8.0);
-        ui.add(field).labelled_by(label.id);
-        Grid::new("digits").spacing([8.0, 8.0]).show(ui, |ui| {
-            for row in [["1", "2", "3"], ["4", "5", "6"], ["7", "8", "9"], ["-", "0", "."]] {
-                for key in row {
-                    let button = Button::new(RichText::new(key).size(24.0)).min_size(KEY.into());
-                    if ui.add(button).clicked() {
-                        self.typed.push_str(key);
-                    }
-                }
-                ui.end_row();
-            }
-        });
-        let sets = |ui: &mut Ui, text: Text, may: bool| {
-            let button = Button::new(RichText::new(words.say(text)).size(18.0)).min_size(SETS.into());
-            ui.add_enabled(may, button).clicked()
-        };
-        if sets(ui, Text::DeleteDigit, !self.typed.is_empty()) {
-            self.typed.pop();
-        }
+        pad::show(ui, view, &mut self.typed, "");
         // Nothing typed is 0.
         let typed = number(&self.typed);
-        if sets(ui, Text::OriginIs, typed.is_some()) {
+        if pad::sets(ui, view, Text::OriginIs, typed.is_some()) {
             self.set(typed, |offset, chosen, typed| match chosen {
                 ROTATION => offset.rotation_deg = typed,
                 axis => offset.origin[axis] = typed,
             });
         }
         let tip = tip.filter(|_| self.chosen != ROTATION);
-        if sets(ui, Text::TipIs, typed.is_some() && tip.is_some())
+        if pad::sets(ui, view, Text::TipIs, typed.is_some() && tip.is_some())
             && let Some(tip) = tip
         {
             self.set(typed, |offset, axis, typed| offset.touch_off(axis, tip, typed));
         }
         if typed.is_none() {
-            let text = RichText::new(words.say(Text::NotAnOffset)).color(view.theme.doubt);
+            let text = RichText::new(view.words.say(Text::NotAnOffset)).color(view.theme.doubt);
             ui.add(Label::new(text).wrap());
         }
     }

@@ -2,7 +2,7 @@ use super::*;
 use crate::live::Signal;
 use crate::viewing::watched::Watched;
 use cam::along::Along;
-use host_link::events::{MeasuredPicture, SeamInPicture};
+use host_link::events::{Focus, MeasuredPicture, SeamInPicture};
 use shared::io::SwitchedLines;
 use shared::io::{AXES, LEVELS, MOTORS, SLIDES};
 use shared::state::{State, TrackerState};
@@ -125,6 +125,7 @@ impl Weld {
                 quality: 1.0,
                 edges: [[[0.0; 2]; 2]; 2],
             }),
+            focus: Focus::default(),
         }
     }
 

@@ -87,6 +87,7 @@ impl Live {
             calibrations,
             kept: Some(queues),
             noted: None,
+            shown_every: None,
         };
         let work = Work::Pictures(&picture_run);
         let ended = match on_machine.run(work, images, source, Workpiece::Seams)? {

@@ -169,6 +169,7 @@ impl Spot {
             calibrations,
             kept: None,
             noted: Some((side, noted)),
+            shown_every: None,
         };
         let ended = match on_machine.run(Work::Mark(&run), images, source, Workpiece::BarePlate)? {
             Ok(ended) => ended,

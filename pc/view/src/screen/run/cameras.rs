@@ -13,10 +13,17 @@ use shared::io::SIDES;
 
 /// Pictures on the graphics card, with the number of the capture that each is of.
 #[derive(Default)]
-pub(super) struct Textures([Option<(u32, TextureHandle)>; SIDES]);
+pub struct Textures([Option<(u32, TextureHandle)>; SIDES]);
 
 impl Textures {
-    pub fn show(&mut self, ui: &mut Ui, view: &View, live: &Live) {
+    /// Shows both cameras beside each other, with `below` under each picture.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        view: &View,
+        live: &Live,
+        mut below: impl FnMut(&mut Ui, &MeasuredPicture),
+    ) {
         ui.columns_const(|columns: &mut [Ui; SIDES]| {
             for (side, ui) in columns.iter_mut().enumerate() {
                 // Columns would stretch text to their width.
@@ -26,7 +33,10 @@ impl Textures {
                 let number = (side + 1).to_string();
                 super::title(ui, view, &view.words.with(Text::Camera, &[&number]));
                 match &live.pictures[side] {
-                    Some(picture) => self.picture(ui, view, picture, live.beam_is_on()),
+                    Some(picture) => {
+                        self.picture(ui, view, picture, live.beam_is_on());
+                        below(ui, picture);
+                    }
                     None => nothing(ui, view, Text::NoPicture),
                 }
             }
@@ -70,13 +80,17 @@ impl Textures {
         overlay(ui, shown.rect, picture, colour);
         ui.spacing_mut().item_spacing.y = 2.0;
         ui.label(RichText::new(view.words.say(text)).strong().color(colour));
-        if let Some(seam) = &picture.seam {
-            ui.add(
-                Label::new(RichText::new(measured(view, seam)).size(13.0))
-                    .wrap()
-                    .halign(Align::Min),
-            );
-        }
+    }
+}
+
+/// What was measured of the seam.
+pub(super) fn figures(ui: &mut Ui, view: &View, picture: &MeasuredPicture) {
+    if let Some(seam) = &picture.seam {
+        ui.add(
+            Label::new(RichText::new(measured(view, seam)).size(13.0))
+                .wrap()
+                .halign(Align::Min),
+        );
     }
 }
 

@@ -8,6 +8,7 @@ mod way;
 
 use super::{View, bare, nothing, title};
 use crate::seen::Seen;
+pub use cameras::Textures;
 pub use deviations::line;
 use eframe::egui::{self, Frame, Ui};
 
@@ -40,7 +41,9 @@ impl Sight {
                         .exact_size((height * 1.5).min(ui.available_width() / 2.0))
                         .resizable(false)
                         .show(ui, |ui| {
-                            self.cameras.show(ui, view, seen.live);
+                            self.cameras.show(ui, view, seen.live, |ui, picture| {
+                                cameras::figures(ui, view, picture);
+                            });
                         });
                     deviations::show(ui, view, seen);
                 });

@@ -1,14 +1,18 @@
-//! The page for teaching: the tip is jogged to the places of a part, and they are taken down.
+//! The page for teaching: the tip is jogged to the places of a part, and they are taken down; or the cameras are taught its seams.
 
-use super::{View, access, bare, jog, title};
+mod places;
+mod seams;
+
+use super::{View, access, bare, jog};
 use crate::station::{Action, Station};
 use crate::teaching::Teaching;
 use crate::texts::Text;
 use config::sentence;
 use eframe::egui::{self, Button, Id, Label, Modal, RichText, ScrollArea, Ui};
 use std::path::Path;
+use view::screen::run::Textures;
 
-/// Width of part and places \[points\].
+/// Width of part and points \[points\].
 const LEFT: f32 = 428.0;
 /// Size of a large button \[points\].
 const LARGE: [f32; 2] = [196.0, 56.0];
@@ -17,6 +21,10 @@ const LARGE: [f32; 2] = [196.0, 56.0];
 #[derive(Default)]
 pub(super) struct TeachPage {
     teaching: Option<Teaching>,
+    /// Of the lesson.
+    cameras: Textures,
+    /// Lessons whose points are counted.
+    counted: u32,
     /// What was done last: a text and what is put in, or an error.
     said: Option<Result<(Text, String), String>>,
     over: Over,
@@ -29,108 +37,59 @@ enum Over {
     Nothing,
     /// The list of parts.
     Parts,
-    /// The question before all places are taken out.
+    /// The question before all that was taught is taken out.
     Restart,
+    /// The question before a lesson.
+    Lesson,
 }
 
 impl TeachPage {
     pub fn show(&mut self, ui: &mut Ui, view: &View, station: &mut Station, panel: &mut jog::Panel) {
-        bare(egui::Panel::left("places"))
+        self.count(station);
+        bare(egui::Panel::left("taught"))
             .exact_size(LEFT)
             .resizable(false)
-            .show(ui, |ui| self.places(ui, view, station));
-        egui::Frame::new().inner_margin(8).show(ui, |ui| {
-            panel.show(ui, view, station);
-            if station.by_hand().is_none() {
-                ui.add(Label::new(view.words.say(Text::HomeFirst)).wrap());
-            }
-            if let Some(told) = &station.live.told {
-                ui.add(Label::new(RichText::new(told).color(view.theme.doubt)).wrap());
-            }
-        });
+            .show(ui, |ui| self.part(ui, view, station));
+        egui::Frame::new()
+            .inner_margin(8)
+            .show(ui, |ui| match &self.teaching {
+                Some(Teaching::Seams(_)) => self.cameras.show(ui, view, &station.live, |_, _| {}),
+                _ => places::led(ui, view, station, panel),
+            });
         match self.over {
             Over::Nothing => {}
             Over::Parts => self.choose(ui, view, station),
             Over::Restart => self.restart(ui, view, station),
+            Over::Lesson => self.ask(ui, view, station),
         }
     }
 
-    fn places(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
-        let words = view.words;
+    /// The part, and what was taught of it.
+    fn part(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
         // What opens covers Stop: not where anything moves.
         let rests = !station.is_running() || station.may(Action::ByHand, view.now);
         if button(ui, view, Text::ChoosePart, rests) {
             self.over = Over::Parts;
         }
-        let Some(teaching) = &mut self.teaching else {
-            ui.add(Label::new(RichText::new(words.say(Text::NoPart)).color(view.theme.faint)).wrap());
-            self.say(ui, view);
-            return;
+        let part = match &self.teaching {
+            None => {
+                let text = RichText::new(view.words.say(Text::NoPart)).color(view.theme.faint);
+                ui.add(Label::new(text).wrap());
+                self.say(ui, view);
+                return;
+            }
+            Some(Teaching::Places(places)) => places.part(),
+            Some(Teaching::Seams(seams)) => seams.part(),
         };
-        let name = name_of(teaching.part());
-        ui.label(RichText::new(name).size(18.0).strong());
+        ui.label(RichText::new(name_of(part)).size(18.0).strong());
         if !station.allows(Action::Teach) {
             let text = RichText::new(access::needs(view, Action::Teach)).color(view.theme.doubt);
             ui.add(Label::new(text).wrap());
         }
-        let allowed = station.allows(Action::Teach);
-        let ready = station.may(Action::ByHand, view.now);
-        let none = teaching.points().is_empty() || !allowed;
-        let mut done = None;
-        ui.horizontal(|ui| {
-            if button(ui, view, Text::Take, ready)
-                && let (Some(machine), Some(motion)) = (station.by_hand(), &station.live.motion)
-            {
-                done = Some(
-                    match station.teach(|| teaching.take(machine, &motion.reference)) {
-                        Ok(true) => Ok((Text::Taken, teaching.points().len().to_string())),
-                        Ok(false) => Ok((Text::TakenAlready, String::new())),
-                        Err(error) => Err(error),
-                    },
-                );
-            }
-            if button(ui, view, Text::Undo, !none) {
-                done = Some(
-                    station
-                        .teach(|| teaching.undo())
-                        .map(|()| (Text::Undone, String::new())),
-                );
-            }
-        });
-        ui.horizontal(|ui| {
-            if button(ui, view, Text::PlanProgram, station.by_hand().is_some() && !none)
-                && let Some(machine) = station.by_hand()
-            {
-                done = Some(station.teach(|| teaching.plan(machine)).map(|program| {
-                    let name = name_of(&program);
-                    station.load(program, None);
-                    (Text::Planned, name)
-                }));
-            }
-            if button(ui, view, Text::Restart, rests && !none) {
-                self.over = Over::Restart;
-            }
-        });
-        if let Some(done) = done {
-            self.said = Some(told(done));
+        match self.teaching {
+            Some(Teaching::Places(_)) => self.places(ui, view, station, rests),
+            _ => self.seams(ui, view, station, rests),
         }
-        self.say(ui, view);
-        let Some(teaching) = &self.teaching else { return };
-        title(
-            ui,
-            view,
-            &words.with(Text::PlacesIn, &[&name_of(teaching.places_file())]),
-        );
-        ScrollArea::vertical().stick_to_bottom(true).show(ui, |ui| {
-            for (number, point) in (1..).zip(teaching.points()) {
-                let [x, y, z] = point.position_mm;
-                let [a, b, c] = point.angles_deg;
-                // No angle is -0.
-                let [a, b, c] = [a, b, c].map(|angle| (angle * 1e2).round() / 1e2 + 0.0);
-                let text = format!("{number:2} {x:8.2} {y:8.2} {z:8.2} {a:7.2} {b:7.2} {c:7.2}");
-                ui.label(RichText::new(text).monospace().size(12.0));
-            }
-        });
     }
 
     fn say(&self, ui: &mut Ui, view: &View) {
@@ -186,7 +145,12 @@ impl TeachPage {
             ui.horizontal(|ui| {
                 if button(ui, view, Text::RestartNow, true) {
                     let teaching = self.teaching.as_mut();
-                    let done = teaching.map(|teaching| station.teach(|| teaching.restart()));
+                    let done = teaching.map(|teaching| {
+                        station.teach(|| match teaching {
+                            Teaching::Places(places) => places.restart(),
+                            Teaching::Seams(seams) => seams.restart(),
+                        })
+                    });
                     self.said = done.map(|done| told(done.map(|()| (Text::Undone, String::new()))));
                     self.over = Over::Nothing;
                 }

@@ -1,0 +1,47 @@
+//! What a file does not have yet, and what it is to have no more.
+
+use toml_edit::{DocumentMut, Item, Table, TableLike, TomlError, value};
+
+/// `text` with `number` as the value called `key` of the table with these names, from outside inwards; tables that are not there
+/// are made. The rest of it stays to the letter.
+///
+/// # Errors
+/// It is no TOML.
+pub fn insert(text: &str, tables: &[&str], key: &str, number: f64) -> Result<String, TomlError> {
+    let mut document: DocumentMut = text.parse()?;
+    let mut table: &mut dyn TableLike = document.as_table_mut();
+    for (depth, name) in tables.iter().enumerate() {
+        if !table.get(name).is_some_and(Item::is_table_like) {
+            let mut new = Table::new();
+            // Tables of tables have no line of their own.
+            new.set_implicit(depth + 1 < tables.len());
+            table.insert(name, Item::Table(new));
+        }
+        let Some(inner) = table.get_mut(name).and_then(Item::as_table_like_mut) else {
+            return Ok(text.to_owned());
+        };
+        table = inner;
+    }
+    table.insert(key, value(number));
+    Ok(document.to_string())
+}
+
+/// `text` without the table with these names, from outside inwards, and without the comment on it.
+///
+/// # Errors
+/// It is no TOML.
+pub fn remove(text: &str, tables: &[&str]) -> Result<String, TomlError> {
+    let mut document: DocumentMut = text.parse()?;
+    let Some((last, around)) = tables.split_last() else {
+        return Ok(text.to_owned());
+    };
+    let mut table: &mut dyn TableLike = document.as_table_mut();
+    for name in around {
+        let Some(inner) = table.get_mut(name).and_then(Item::as_table_like_mut) else {
+            return Ok(text.to_owned());
+        };
+        table = inner;
+    }
+    table.remove(last);
+    Ok(document.to_string())
+}
