@@ -13,6 +13,8 @@ const PART: &str = "lap-joint.toml";
 /// Where the first pass is welded.
 const WELDON: &str = "  14 N80 WELDON=root";
 const JERK: &str = "axes.X.max_jerk =";
+/// Pace of simulated boards at which a screen that is drawn twice a second still sees a weld every few millimetres.
+const SEEN: f64 = 20.0;
 
 fn x_mm(station: &Station) -> Option<f64> {
     station.live.motion.as_ref().map(|motion| motion.reference[0])
@@ -146,7 +148,8 @@ fn from_power_on_to_a_start_at_a_line() {
         text(&programs.join("lap-joint.ngc.0001"))
     );
 
-    // Weld it from its first weld on.
+    // Weld it from its first weld on, slowly enough to be seen in every pass.
+    bench.station().place.pace = SEEN;
     bench.open(Page::Run);
     bench.tap_containing(WELDON);
     bench.until("it is loaded", |station| !station.is_loading());
