@@ -92,7 +92,17 @@ fn language(tag: &str) -> Result<Language, &'static str> {
         .ok_or("must be en, zh-Hans or de")
 }
 
+/// Has all threads share two heaps. By itself glibc opens one for each thread, and what a job has freed stays in them.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+#[allow(unsafe_code, reason = "a call into the C library that only takes numbers")]
+fn share_heaps() {
+    // SAFETY: no other thread runs yet, and any value is allowed.
+    unsafe { libc::mallopt(libc::M_ARENA_MAX, 2) };
+}
+
 fn main() -> ExitCode {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    share_heaps();
     match run(Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

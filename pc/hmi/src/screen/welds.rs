@@ -8,10 +8,13 @@ use eframe::egui::{self, Button, Color32, Grid, Label, RichText, ScrollArea, Tex
 use egui_plot::Plot;
 use shared::io::{SLIDE_NAMES, SLIDES};
 use std::path::{Path, PathBuf};
-use view::screen::run::line;
+use view::screen::curves::Curves;
+use view::screen::run::curve;
 
 /// Width of the list \[points\].
 const LIST: f32 = 280.0;
+/// Colour of the job that is compared with.
+const OTHER: Color32 = Color32::from_gray(130);
 /// Height of a row that is tapped \[points\].
 const ROW: f32 = 40.0;
 
@@ -21,6 +24,7 @@ pub(super) struct WeldsPage {
     folders: Vec<PathBuf>,
     shown: Option<(PathBuf, Result<Record, String>)>,
     compared: Option<(PathBuf, Result<Record, String>)>,
+    drawn: Curves,
 }
 
 impl WeldsPage {
@@ -58,7 +62,7 @@ impl WeldsPage {
         };
         let other = self.compared.as_ref().and_then(|(_, read)| read.as_ref().ok());
         heading(ui, view, record);
-        curves(ui, view, record, other);
+        deviations(ui, view, record, other, &mut self.drawn);
         figures(ui, view, record, other);
     }
 }
@@ -119,23 +123,25 @@ fn heading(ui: &mut Ui, view: &View, record: &Record) {
     }
 }
 
-/// True deviations along the seam; those of the other job thin and grey.
-fn curves(ui: &mut Ui, view: &View, record: &Record, other: Option<&Record>) {
+/// True deviations along the seam; those of the other job grey and beneath.
+fn deviations(ui: &mut Ui, view: &View, record: &Record, other: Option<&Record>, drawn: &mut Curves) {
     if record.deviations.bins().next().is_none() {
         return;
     }
     super::title(ui, view, view.words.say(Text::TrueDeviation));
-    let plot = Plot::new("true deviations").height(200.0).allow_scroll(false);
-    plot.show(ui, |plot| {
-        for slide in 0..SLIDES {
-            let name = SLIDE_NAMES[slide];
-            if let Some(other) = other {
-                let line = line(format!("{} {name}", other.name), &other.deviations, slide);
-                plot.line(line.color(Color32::from_gray(130)).width(1.0));
-            }
-            plot.line(line(name, &record.deviations, slide).color(view.theme.slides[slide]));
+    ui.horizontal(|ui| {
+        for (name, colour) in SLIDE_NAMES.into_iter().zip(view.theme.slides) {
+            ui.colored_label(colour, name);
+        }
+        if let Some(other) = other {
+            ui.colored_label(OTHER, &other.name);
         }
     });
+    let others = other.map(|other| (0..SLIDES).map(|slide| curve(&other.deviations, slide, OTHER)));
+    let own = (0..SLIDES).map(|slide| curve(&record.deviations, slide, view.theme.slides[slide]));
+    let curves = others.into_iter().flatten().chain(own).collect();
+    let plot = Plot::new("true deviations").height(180.0).allow_scroll(false);
+    plot.show(ui, |plot| drawn.show(plot, curves));
 }
 
 fn figures(ui: &mut Ui, view: &View, record: &Record, other: Option<&Record>) {

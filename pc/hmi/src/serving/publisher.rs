@@ -109,8 +109,9 @@ impl Viewer {
         }
     }
 
-    fn has_taken_all(&self) -> bool {
-        self.waiting.load(Ordering::Acquire) == 0
+    /// It is behind, and has taken what it had.
+    fn can_catch_up(&self) -> bool {
+        self.is_behind && self.waiting.load(Ordering::Acquire) == 0
     }
 }
 
@@ -145,16 +146,20 @@ fn take(thinner: &mut Thinner, stage: &Stage, events: &mut Option<Subscription>,
 }
 
 fn tell(thinner: &mut Thinner, viewers: &Viewers, now: Duration) {
+    if viewers.count() == 0 {
+        thinner.tell_nobody();
+        return;
+    }
     // Encoded while nobody has to wait for a seat; who sits down meanwhile is behind.
     let changes = encoded(&thinner.changes(now));
-    let is_new = viewers.all().iter().any(|viewer| viewer.is_behind);
+    let is_new = viewers.all().iter().any(Viewer::can_catch_up);
     let all = if is_new { encoded(&thinner.all(now)) } else { None };
     let Some(changes) = changes else { return };
     thinner.sent(changes.len());
     for viewer in viewers.all().iter_mut() {
         if !viewer.is_behind {
             viewer.send(changes.clone());
-        } else if let Some(all) = all.clone().filter(|_| viewer.has_taken_all()) {
+        } else if let Some(all) = all.clone().filter(|_| viewer.can_catch_up()) {
             viewer.is_behind = false;
             viewer.send(all);
         }

@@ -5,7 +5,7 @@ use super::budget::Budget;
 use super::stage::Taken;
 use super::ticks;
 use crate::drawn::Listing;
-use crate::live::{Deviations, Journal, Live};
+use crate::live::{Deviations, Journal, Live, Signals};
 use crate::loaded::Loaded;
 use crate::seen::Standing;
 use crate::viewing::picture::SentPicture;
@@ -99,6 +99,7 @@ impl Thinner {
             let program = self.program.as_ref().filter(|_| begun.is_of_program);
             let along = program.map(|loaded| loaded.drawn.way.along.clone());
             self.live = Live::new(along.unwrap_or_default(), Journal::default());
+            self.live.signals = Signals::keeping(SIGNALS_S);
             self.is_of_program = begun.is_of_program;
             (self.told.begun, self.told.status) = (false, false);
             self.told.deviations = Deviations::default();
@@ -145,6 +146,12 @@ impl Thinner {
         }
         self.told = told;
         self.message(false, now, updates)
+    }
+
+    /// Nobody watches: ticks that wait for a message are dropped. Who comes is told [`Self::all`].
+    pub fn tell_nobody(&mut self) {
+        self.motion.clear();
+        self.tracker.clear();
     }
 
     /// All that there is.

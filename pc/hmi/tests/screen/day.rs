@@ -1,9 +1,11 @@
 //! A day at the screen, on simulated boards, without a window: tapped as an operator taps.
 
 use crate::bench::{Bench, PROGRAM};
+use eframe::egui::ViewportId;
 use egui_kittest::kittest::Queryable;
 use hmi::station::{Action, Station};
 use shared::state::State;
+use std::time::Duration;
 
 fn along_mm(station: &Station) -> f64 {
     station.live.along_mm().unwrap_or(0.0)
@@ -136,6 +138,30 @@ fn in_single_block_it_waits_and_says_for_what() {
     bench.tap("Resume");
     bench.until("it goes on", |station| station.live.question.is_none());
     bench.until("it waits again", |station| station.live.question.is_some());
+    bench.tap("STOP");
+    bench.until("the job is over", |station| !station.is_running());
+}
+
+/// Where nothing moves on the screen, it is drawn 20 times a second and not as often as it can be: also at the end of a
+/// program, where the list of its lines cannot be scrolled on.
+#[test]
+fn at_the_last_lines_of_a_program_the_screen_is_not_drawn_without_a_pause() {
+    let mut bench = Bench::new();
+    let program = bench.folder.path().join("long.ngc");
+    let comments = "(nothing)\n".repeat(100);
+    std::fs::write(
+        &program,
+        format!("G21 G90\n{comments}G0 X400 Y300 Z250\nM0\nM2\n"),
+    )
+    .expect("written");
+    bench.load(program.to_str().expect("text"));
+    bench.tap("Start…");
+    bench.tap("Weld now");
+    bench.until("it waits", |station| station.live.question.is_some());
+    bench.harness.run_steps(20);
+    let output = bench.harness.output();
+    let again = output.viewport_output[&ViewportId::ROOT].repaint_delay;
+    assert!(again > Duration::ZERO);
     bench.tap("STOP");
     bench.until("the job is over", |station| !station.is_running());
 }

@@ -5,8 +5,10 @@ use shared::protocol::{MotionSample, TrackerSample};
 use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
 use std::collections::VecDeque;
 
-/// Ticks that are kept of each board: 30 s.
-const KEPT: usize = 30_000;
+/// What is kept of each board, unless less is asked for \[s\].
+const KEPT_S: f64 = 30.0;
+/// Ticks of a board in a second.
+const TICKS_PER_S: f64 = 1000.0;
 
 /// Part of a new relation of the clocks that counts, once a tick.
 const SMOOTHING: f64 = 1e-3;
@@ -139,23 +141,41 @@ impl Signal {
 }
 
 /// The newest ticks of both boards.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Signals {
+    /// Ticks that are kept of each board.
+    kept: usize,
     motion: VecDeque<MotionSample>,
     tracker: VecDeque<TrackerSample>,
     /// How far the tracker board's clock is ahead of the motion board's \[µs\].
     tracker_ahead_us: Option<f64>,
 }
 
+impl Default for Signals {
+    fn default() -> Self {
+        Self::keeping(KEPT_S)
+    }
+}
+
 impl Signals {
+    /// Keeps the newest `seconds` of each board.
+    pub fn keeping(seconds: f64) -> Self {
+        Self {
+            kept: (seconds * TICKS_PER_S) as usize,
+            motion: VecDeque::new(),
+            tracker: VecDeque::new(),
+            tracker_ahead_us: None,
+        }
+    }
+
     /// Takes a tick of the motion board.
     pub fn motion(&mut self, sample: &MotionSample) {
-        keep(&mut self.motion, *sample);
+        keep(&mut self.motion, self.kept, *sample);
     }
 
     /// Takes a tick of the tracker board.
     pub fn tracker(&mut self, sample: &TrackerSample) {
-        keep(&mut self.tracker, *sample);
+        keep(&mut self.tracker, self.kept, *sample);
         if let Some(motion) = self.motion.back() {
             let ahead = sample.time_us as f64 - motion.time_us as f64;
             let known = *self.tracker_ahead_us.get_or_insert(ahead);
@@ -191,19 +211,18 @@ impl Signals {
     /// Times \[s\], by the motion board's clock, and values of the newest `window_s` of `signal`, oldest first: extremes
     /// of pieces, where there would be more than `most` of them.
     pub fn course(&self, signal: Signal, window_s: f64, most: usize) -> Vec<[f64; 2]> {
-        let all: Vec<[f64; 2]> = match signal {
+        match signal {
             Signal::Slide(_) | Signal::SlideError(_) => {
                 let told = newest(&self.tracker, window_s, |sample| sample.time_us);
-                told.filter_map(|s| Some([self.motion_s(s.time_us), signal.of_tracker(s)?]))
-                    .collect()
+                let point = |s: &TrackerSample| Some([self.motion_s(s.time_us), signal.of_tracker(s)?]);
+                extremes(told, most, point)
             }
             _ => {
                 let told = newest(&self.motion, window_s, |sample| sample.time_us);
-                told.filter_map(|s| Some([s.time_us as f64 * 1e-6, signal.of_motion(s)?]))
-                    .collect()
+                let point = |s: &MotionSample| Some([s.time_us as f64 * 1e-6, signal.of_motion(s)?]);
+                extremes(told, most, point)
             }
-        };
-        extremes(&all, most)
+        }
     }
 
     /// The newest `window_s` of both boards, oldest first.
@@ -231,36 +250,55 @@ impl Signals {
     }
 }
 
-fn keep<T>(samples: &mut VecDeque<T>, sample: T) {
-    if samples.len() == KEPT {
+fn keep<T>(samples: &mut VecDeque<T>, most: usize, sample: T) {
+    if samples.len() >= most {
         samples.pop_front();
     }
     samples.push_back(sample);
 }
 
 /// Samples of the newest `window_s`.
-fn newest<T>(samples: &VecDeque<T>, window_s: f64, time_us: impl Fn(&T) -> u64) -> impl Iterator<Item = &T> {
+fn newest<T>(
+    samples: &VecDeque<T>,
+    window_s: f64,
+    time_us: impl Fn(&T) -> u64,
+) -> impl ExactSizeIterator<Item = &T> {
     let end = samples.back().map_or(0, &time_us);
     let begin = end.saturating_sub((window_s * 1e6) as u64);
     let first = samples.partition_point(|sample| time_us(sample) < begin);
     samples.range(first..)
 }
 
-/// At most `most` points: of equal pieces of `all` the least and the largest, in their order.
-fn extremes(all: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
-    if all.len() <= most {
-        return all.to_vec();
+/// The points of `samples` in their order; beyond `most` of them, of equal pieces the least and the largest.
+fn extremes<'a, T: 'a>(
+    samples: impl ExactSizeIterator<Item = &'a T>,
+    most: usize,
+    point: impl Fn(&T) -> Option<[f64; 2]>,
+) -> Vec<[f64; 2]> {
+    let count = samples.len();
+    if count <= most {
+        return samples.filter_map(point).collect();
     }
-    let piece = all.len().div_ceil(most.div_ceil(2));
-    let by_value = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
-    let ends = all.chunks(piece).flat_map(|piece| {
-        let least = piece.iter().min_by(by_value).copied();
-        let largest = piece.iter().max_by(by_value).copied();
-        let mut ends: Vec<[f64; 2]> = least.into_iter().chain(largest).collect();
-        ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        ends
-    });
-    ends.collect()
+    let piece = count.div_ceil(most.div_ceil(2));
+    let mut ends = Vec::with_capacity(2 * count.div_ceil(piece));
+    let mut points = samples.filter_map(point);
+    while let Some(first) = points.next() {
+        let (mut least, mut largest) = (first, first);
+        for point in points.by_ref().take(piece - 1) {
+            if point[1] < least[1] {
+                least = point;
+            }
+            if point[1] >= largest[1] {
+                largest = point;
+            }
+        }
+        ends.extend(if least[0] <= largest[0] {
+            [least, largest]
+        } else {
+            [largest, least]
+        });
+    }
+    ends
 }
 
 #[cfg(test)]
@@ -281,7 +319,7 @@ mod tests {
     fn a_course_of_few_points_keeps_its_peaks_where_they_were() {
         let mut all: Vec<[f64; 2]> = (0..10_000).map(|k| [f64::from(k), 0.0]).collect();
         (all[4321][1], all[777][1]) = (9.0, -5.0);
-        let few = extremes(&all, 100);
+        let few = extremes(all.iter(), 100, |point| Some(*point));
         assert!(few.len() <= 102, "{}", few.len());
         assert!(few.contains(&[4321.0, 9.0]) && few.contains(&[777.0, -5.0]));
         assert!(few.is_sorted_by(|a, b| a[0] <= b[0]));

@@ -2,6 +2,7 @@
 
 pub mod alarms;
 pub mod bar;
+pub mod curves;
 pub mod look;
 pub mod pages;
 pub mod plot;

@@ -3,12 +3,13 @@
 mod export;
 mod trigger;
 
+use super::curves::{Curve, Curves, live_plot};
 use super::{View, bare};
 use crate::live::{SIGNALS, Signal, Signals};
 use crate::texts::{Text, Words};
 use config::sentence;
 use eframe::egui::{self, Button, Color32, Grid, Label, RichText, ScrollArea, Ui};
-use egui_plot::{Corner, Legend, Line, Plot, PlotPoints, VLine};
+use egui_plot::VLine;
 use shared::io::{AXIS_NAMES, MOTOR_NAMES, SLIDE_NAMES};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,6 +43,7 @@ pub struct PlotPage {
     /// Two times \[s\], by the boards' clocks.
     cursors: [Option<f64>; 2],
     told: Option<Result<PathBuf, String>>,
+    drawn: Curves,
 }
 
 impl Default for PlotPage {
@@ -53,6 +55,7 @@ impl Default for PlotPage {
             trigger: Trigger::default(),
             cursors: [None; 2],
             told: None,
+            drawn: Curves::default(),
         }
     }
 }
@@ -183,35 +186,38 @@ impl PlotPage {
             });
     }
 
-    /// Curves, each unit scaled for itself: the value at the top and at the bottom is in the name.
+    /// Curves, each scaled for itself: what is at the bottom and at the top is said above them.
     fn curves(&mut self, ui: &mut Ui, view: &View, shown: &Signals) {
-        let words = view.words;
         let newest = shown.newest_s();
-        let plot = Plot::new("curves")
-            .allow_scroll(false)
-            .allow_drag(false)
-            .allow_zoom(false)
-            .show_y(false);
-        let plot = plot
-            .legend(Legend::default().position(Corner::LeftTop))
+        let mut curves = Vec::with_capacity(self.chosen.len());
+        ui.horizontal_wrapped(|ui| {
+            for signal in &self.chosen {
+                let colour = self.colour(*signal).unwrap_or(Color32::WHITE);
+                let mut points = shown.course(*signal, self.window_s, POINTS);
+                let (low, high) = range(&points);
+                let (name, unit) = (name(view.words, *signal), signal.unit().name());
+                let text = format!("{name}: {low:.3} … {high:.3} {unit}");
+                ui.add(Label::new(RichText::new(text).color(colour)).extend());
+                let span = (high - low).max(1e-9);
+                for [x, y] in &mut points {
+                    (*x, *y) = (*x - newest, (*y - low) / span);
+                }
+                curves.push(Curve {
+                    points,
+                    colour,
+                    is_dashed: false,
+                });
+            }
+        });
+        let plot = live_plot("curves")
+            .show_y(false)
             .include_x(-self.window_s)
             .include_x(0.0)
             .include_y(0.0)
             .include_y(1.0)
             .show_axes([true, false]);
         let response = plot.show(ui, |plot| {
-            for signal in &self.chosen {
-                let course = shown.course(*signal, self.window_s, POINTS);
-                let (low, high) = range(&course);
-                let span = (high - low).max(1e-9);
-                let points: PlotPoints = course
-                    .iter()
-                    .map(|[time, value]| [time - newest, (value - low) / span])
-                    .collect();
-                let unit = signal.unit().name();
-                let name = format!("{}: {low:.3} … {high:.3} {unit}", name(words, *signal));
-                plot.line(Line::new(name, points).color(self.colour(*signal).unwrap_or(Color32::WHITE)));
-            }
+            self.drawn.show(plot, curves);
             for (cursor, name) in self.cursors.into_iter().zip(["A", "B"]) {
                 if let Some(time) = cursor {
                     plot.vline(VLine::new(name, time - newest).color(Color32::WHITE));

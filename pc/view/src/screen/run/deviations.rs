@@ -3,16 +3,17 @@
 use super::title;
 use crate::live::Deviations;
 use crate::screen::View;
+use crate::screen::curves::{Curve, Curves, live_plot};
 use crate::seen::Seen;
 use crate::texts::Text;
-use eframe::egui::{RichText, Ui};
-use egui_plot::{HLine, Line, LineStyle, Plot, PlotPoints, uniform_grid_spacer};
+use eframe::egui::{Color32, RichText, Ui};
+use egui_plot::{HLine, LineStyle, uniform_grid_spacer};
 use shared::io::{SLIDE_NAMES, SLIDES};
 
 /// mm to µm.
 const UM: f64 = 1e3;
 
-pub(super) fn show(ui: &mut Ui, view: &View, seen: &Seen) {
+pub(super) fn show(ui: &mut Ui, view: &View, seen: &Seen, curves: &mut Curves) {
     title(ui, view, view.words.say(Text::Deviation));
     let deviations = &seen.live.deviations;
     let limit = seen.program.and_then(|(drawn, _)| drawn.deviation_limit_mm);
@@ -34,20 +35,15 @@ pub(super) fn show(ui: &mut Ui, view: &View, seen: &Seen) {
     });
     let reach = limit.unwrap_or(0.05) * UM;
     let length = seen.program.map_or(100.0, |(drawn, _)| drawn.way.work_mm());
-    Plot::new("deviations")
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
+    live_plot("deviations")
         .y_grid_spacer(uniform_grid_spacer(move |_| [10.0 * reach, reach, reach / 5.0]))
         .include_x(0.0)
         .include_x(length)
         .include_y(-1.2 * reach)
         .include_y(1.2 * reach)
         .show(ui, |plot| {
-            for slide in 0..SLIDES {
-                plot.line(line(SLIDE_NAMES[slide], deviations, slide).color(view.theme.slides[slide]));
-            }
+            let all = (0..SLIDES).map(|slide| curve(deviations, slide, view.theme.slides[slide]));
+            curves.show(plot, all.collect());
             if limit.is_some() {
                 for side in [-reach, reach] {
                     let name = view.words.with(Text::Limit, &[&format!("{reach:.0}")]);
@@ -59,15 +55,13 @@ pub(super) fn show(ui: &mut Ui, view: &View, seen: &Seen) {
 }
 
 /// The deviation of a slide along the work \[µm\]: U solid, V dashed.
-pub fn line(name: impl Into<String>, deviations: &Deviations, slide: usize) -> Line<'static> {
+pub fn curve(deviations: &Deviations, slide: usize, colour: Color32) -> Curve {
     let ends = deviations
         .bins()
         .flat_map(|(at, bin)| [bin.least[slide], bin.largest[slide]].map(|value| [at, value * UM]));
-    let points: PlotPoints = ends.filter(|[_, value]| value.is_finite()).collect();
-    let style = if slide.is_multiple_of(2) {
-        LineStyle::Solid
-    } else {
-        LineStyle::dashed_dense()
-    };
-    Line::new(name, points).style(style)
+    Curve {
+        points: ends.filter(|[_, value]| value.is_finite()).collect(),
+        colour,
+        is_dashed: !slide.is_multiple_of(2),
+    }
 }

@@ -6,10 +6,11 @@ mod figures;
 mod program;
 mod way;
 
+use super::curves::Curves;
 use super::{View, bare, nothing, title};
 use crate::seen::Seen;
 pub use cameras::Textures;
-pub use deviations::line;
+pub use deviations::curve;
 use eframe::egui::{self, Frame, Ui};
 
 /// Width of the program \[points\].
@@ -24,6 +25,7 @@ const UPPER: f32 = 0.53;
 pub struct Sight {
     way: way::Standpoint,
     cameras: cameras::Textures,
+    deviations: Curves,
 }
 
 impl Sight {
@@ -45,7 +47,7 @@ impl Sight {
                                 cameras::figures(ui, view, picture);
                             });
                         });
-                    deviations::show(ui, view, seen);
+                    deviations::show(ui, view, seen, &mut self.deviations);
                 });
         }
         let tapped = bare(egui::Panel::left("program"))

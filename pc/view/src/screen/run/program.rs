@@ -23,7 +23,9 @@ pub(super) fn show(ui: &mut Ui, view: &View, seen: &Seen) -> Option<u32> {
     ui.spacing_mut().button_padding = [4.0, 0.0].into();
     let mut area = ScrollArea::vertical().auto_shrink(false);
     if let Some(line) = current.filter(|line| *line > 0) {
-        area = area.vertical_scroll_offset(((line as f32 - 1.0 - ABOVE) * LINE).max(0.0));
+        // Beyond the last line it would spring back at every frame, and ask for the next one at once.
+        let last = (drawn.listing.count as f32 * LINE - ui.available_height()).max(0.0);
+        area = area.vertical_scroll_offset(((line as f32 - 1.0 - ABOVE) * LINE).clamp(0.0, last));
     }
     let mut tapped = None;
     area.show_rows(ui, LINE, drawn.listing.count, |ui, rows| {
