@@ -17,6 +17,8 @@ pub struct RecordedBoards<'a> {
     same: u32,
     /// Paths in which the PC had a hand: holds and overrides have no recorded tick.
     touched: u32,
+    /// Path ticks by which motion took longer, as elements came late.
+    late_ticks: u32,
 }
 
 /// What the motion board was told of a path.
@@ -41,7 +43,14 @@ impl<'a> RecordedBoards<'a> {
             path: None,
             same: 0,
             touched: 0,
+            late_ticks: 0,
         }
+    }
+
+    /// By how many ticks the paths that could be compared would have been shorter, had elements come as soon as the board had
+    /// room for them. Boards that run by the clock wait for no computer that is busy.
+    pub fn late_ticks(&self) -> u32 {
+        self.late_ticks
     }
 
     /// How many paths were the same to the bit, and how many could not be compared.
@@ -94,32 +103,47 @@ impl<'a> RecordedBoards<'a> {
             self.touched += 1;
             return;
         }
-        let again = path.play(machine, &status.played);
+        let (again, in_motion) = path.play(machine, &status.played, false);
         assert_eq!(again, status.played, "path {}", status.path_id);
         self.same += 1;
+        let (_, in_motion_promptly) = path.play(machine, &status.played, true);
+        self.late_ticks += in_motion.saturating_sub(in_motion_promptly);
     }
 }
 
 impl RecordedPath {
-    /// Plays it as a dry run does, for as long as it was played.
-    fn play(&self, machine: &Machine, played: &Played) -> Played {
+    /// Plays it as a dry run does, for as long as it was played: with elements that come when they came, or `promptly`, as
+    /// soon as there is room for them. What was put out, and how many ticks of it were not at rest.
+    fn play(&self, machine: &Machine, played: &Played, promptly: bool) -> (Played, u32) {
         let mut planner = Box::new(BoardPlanner::new());
         let limits = machine.plan_limits(&self.limits);
         planner.start(&limits, self.space, self.start_s, &played.start);
         planner.set_override(self.factor);
-        let mut arrivals = self.arrivals.iter().peekable();
+        let arrivals = self.arrivals.iter();
+        let mut coming = arrivals
+            .flat_map(|(tick, elements)| elements.iter().map(move |element| (*tick, element)))
+            .peekable();
+        let mut in_motion = 0;
         loop {
             let ticks = planner.played().ticks;
-            while let Some((_, elements)) = arrivals.next_if(|(tick, _)| *tick <= ticks) {
-                for element in elements {
-                    let element = element.build().expect("the board took it");
-                    planner.push(element).expect("the board had room");
+            let comes = |planner: &BoardPlanner, tick: u32| {
+                if promptly {
+                    planner.room() > 0
+                } else {
+                    tick <= ticks
                 }
+            };
+            while let Some((_, element)) = coming.next_if(|(tick, _)| comes(&planner, *tick)) {
+                let element = element.build().expect("the board took it");
+                planner.push(element).expect("the board had room");
             }
             if ticks == played.ticks {
-                return planner.played();
+                return (planner.played(), in_motion);
             }
-            planner.tick(&machine.kinematics).expect("the board went there");
+            let output = planner.tick(&machine.kinematics).expect("the board went there");
+            if !output.at_rest {
+                in_motion = ticks + 1;
+            }
         }
     }
 }
