@@ -24,6 +24,7 @@ struct Content {
     size: Size,
     high_contrast: bool,
     left_handed: bool,
+    keys_on_screen: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pins: Option<Pins>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -43,6 +44,7 @@ impl Content {
             size: Size(look.zoom),
             high_contrast: look.high_contrast,
             left_handed: look.left_handed,
+            keys_on_screen: look.keys_on_screen,
             pins: pins.cloned(),
             viewers_token: token.map(|token| token.text().to_owned()),
         }
@@ -111,6 +113,7 @@ impl Settings {
                     language: content.language,
                     high_contrast: content.high_contrast,
                     left_handed: content.left_handed,
+                    keys_on_screen: content.keys_on_screen,
                     zoom: content.size.0,
                 },
                 access: Access::new(content.pins),

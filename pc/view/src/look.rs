@@ -15,6 +15,8 @@ pub struct Look {
     pub high_contrast: bool,
     /// Stop and controls on the left.
     pub left_handed: bool,
+    /// Keys to type with come up where something is typed into.
+    pub keys_on_screen: bool,
     /// Size of everything; 1 is for a panel of 1280 × 800.
     pub zoom: f32,
 }
@@ -25,6 +27,7 @@ impl Default for Look {
             language: Language::default(),
             high_contrast: false,
             left_handed: false,
+            keys_on_screen: false,
             zoom: 1.0,
         }
     }

@@ -5,6 +5,7 @@ mod alarms;
 mod bar;
 mod commission;
 mod jog;
+mod keyboard;
 mod levels;
 mod parameters;
 mod qr;
@@ -52,6 +53,7 @@ pub struct Screen {
     refused: levels::Refused,
     /// A PIN is being typed, in the place of the page.
     pad: Option<access::Pad>,
+    keyboard: keyboard::Keyboard,
     settings: Settings,
     /// What is in the settings, or could not be written there.
     kept: (Look, Option<Pins>),
@@ -107,6 +109,7 @@ impl Screen {
             commission: commission::CommissionPage::default(),
             refused: None,
             pad: None,
+            keyboard: keyboard::Keyboard::default(),
             settings,
             kept,
             server: None,
@@ -140,6 +143,7 @@ impl Screen {
         if ui.input(|input| input.pointer.any_down() || !input.keys_down.is_empty()) {
             self.station.touch(view.now);
         }
+        self.keyboard.turn(ui.ctx());
         self.keys(ui, view.now);
         bare(egui::Panel::top("bar")).exact_size(BAR).show(ui, |ui| {
             bar::show(ui, &view, &mut self.station, self.look.left_handed);
@@ -177,6 +181,9 @@ impl Screen {
                     });
                 }
             });
+        if self.look.keys_on_screen {
+            self.keyboard.show(ui.ctx(), &view);
+        }
         if let Some(purpose) = view.asks.take() {
             self.panel.disarm();
             self.pad = Some(access::Pad::new(purpose));

@@ -18,7 +18,11 @@ pub(super) fn show(
 ) {
     let words = view.words;
     appearance(ui, view, look);
-    ui.checkbox(&mut look.left_handed, words.say(Text::LeftHanded));
+    ui.horizontal(|ui| {
+        ui.checkbox(&mut look.left_handed, words.say(Text::LeftHanded));
+        ui.add_space(24.0);
+        ui.checkbox(&mut look.keys_on_screen, words.say(Text::KeysOnScreen));
+    });
     ui.add_space(12.0);
     levels::show(ui, view, station, refused);
     ui.add_space(12.0);

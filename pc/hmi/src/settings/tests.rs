@@ -7,6 +7,7 @@ fn changed() -> (Look, Access) {
         language: Language::Chinese,
         high_contrast: true,
         left_handed: true,
+        keys_on_screen: true,
         zoom: 1.35,
     };
     let mut access = Access::default();

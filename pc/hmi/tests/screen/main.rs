@@ -7,6 +7,7 @@ mod cameras;
 mod chromium;
 mod commission;
 mod day;
+mod keyboard;
 mod parameters;
 mod pictures;
 mod set_up;

@@ -402,6 +402,7 @@ texts! {
     // The screen itself
     LanguageChoice: "Language", "语言", "Sprache";
     Contrast: "High contrast", "高对比度", "Hoher Kontrast";
+    KeysOnScreen: "Keys to type with on the screen", "屏幕按键输入", "Tasten zum Tippen auf dem Bildschirm";
     LeftHanded: "Stop and controls on the left", "停止与控制在左侧", "Stopp und Bedienung links";
     Size: "Size of everything", "整体大小", "Größe von allem";
     Machine: "Machine", "机器", "Maschine";
