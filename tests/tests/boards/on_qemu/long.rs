@@ -93,7 +93,7 @@ fn run(mut command: Command, log: &Path) -> (String, Duration) {
 }
 
 #[test]
-#[ignore = "a quarter of an hour: run by cargo xtask test --extended"]
+#[ignore = "6 minutes and more: run by cargo xtask test --extended"]
 fn a_drawn_machine_is_commissioned_and_welds_within_its_limits() {
     let plant: PlantChoice = DRAWN.parse().expect("a machine");
     let mut pair = Pair::for_jobs_on(&plant, "commissioned", DEFAULT_MACHINE);
