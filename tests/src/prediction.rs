@@ -17,7 +17,7 @@ const JOB: f64 = 0.005;
 const MOTION: f64 = 0.001;
 
 /// Does a job. If nothing ends it early, references are those of a dry run that gets the elements at the same ticks, to the
-/// bit; if it is one of a program, it takes as long as a dry run says, and as elements came late.
+/// bit; if it is one of a program, it takes as long as a dry run says.
 ///
 /// # Panics
 /// Where it does not.
@@ -32,7 +32,7 @@ pub fn run(boards: &mut dyn Boards, job: &Job) -> Ended {
     );
     assert!(ended.error.is_some() || same > 0);
     if let (Work::Program(program), None) = (&job.work, &ended.error) {
-        seen.assert_predicted(&dry_run(job, program), late_s);
+        seen.assert_predicted(&dry_run(job, program));
     }
     ended
 }
@@ -75,7 +75,7 @@ impl OnPaths {
         }
     }
 
-    fn assert_predicted(&self, predicted: &DryRun, late_s: f64) {
+    fn assert_predicted(&self, predicted: &DryRun) {
         let first = self.first.expect("a job with paths");
         let job = 1e-3 * f64::from(self.last - first + 1);
         let motion = 1e-3 * f64::from(self.ticks);
@@ -87,7 +87,7 @@ impl OnPaths {
             ("job", predicted.duration_s, job, JOB),
             ("motion", predicted.motion_s, motion, MOTION),
         ] {
-            let off = predicted / (seen - late_s) - 1.0;
+            let off = predicted / seen - 1.0;
             assert!(
                 off.abs() < limit,
                 "{what}: {predicted} s, {:.3} % off",

@@ -48,7 +48,7 @@ impl<'a> RecordedBoards<'a> {
     }
 
     /// By how many ticks the paths that could be compared would have been shorter, had elements come as soon as the board had
-    /// room for them. Boards that run by the clock wait for no computer that is busy.
+    /// room for them: what the PC was too slow for.
     pub fn late_ticks(&self) -> u32 {
         self.late_ticks
     }

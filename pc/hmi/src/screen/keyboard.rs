@@ -42,8 +42,8 @@ impl Keyboard {
     /// To be called before anything is drawn that is typed into.
     pub fn turn(&mut self, context: &Context) {
         context.input_mut(|input| input.events.append(&mut self.typed));
-        let pressed = context.input(|input| input.pointer.interact_pos());
-        let is_over = self.area.zip(pressed).is_some_and(|(area, at)| area.contains(at));
+        let pointer = context.input(|input| input.pointer.interact_pos());
+        let is_over = self.area.zip(pointer).is_some_and(|(area, at)| area.contains(at));
         context.options_mut(|options| {
             // A tap on a key leaves the field as it is.
             options.input_options.surrender_focus_on = if is_over {
