@@ -32,6 +32,8 @@ pub struct Permits {
     /// How long each is valid after the tick of the path state that it answers \[µs\].
     valid_us: u32,
     newest: Option<Newest>,
+    /// What was refused since the last [`Permits::take_refused`].
+    refused: [bool; SIDES],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +48,7 @@ impl Permits {
     pub const NONE: Self = Self {
         valid_us: PERMIT_US,
         newest: None,
+        refused: [false; SIDES],
     };
 
     /// From now on each is valid for so long \[µs\].
@@ -56,6 +59,7 @@ impl Permits {
     /// Forgets the newest.
     pub fn forget(&mut self) {
         self.newest = None;
+        self.refused = [false; SIDES];
     }
 
     /// Takes a permit that has arrived after path tick `tick`, which was at `tick_us` of this board's clock. One
@@ -74,6 +78,14 @@ impl Permits {
             permit: *permit,
             ends_us: answers_us + u64::from(self.valid_us),
         });
+        for (refused, side) in self.refused.iter_mut().zip(permit.sides) {
+            *refused |= side == BeamPermit::No;
+        }
+    }
+
+    /// Sides that were refused since the last call, even if a later permit allows them again.
+    pub fn take_refused(&mut self) -> [bool; SIDES] {
+        core::mem::take(&mut self.refused)
     }
 
     /// Whether the beam of `side` may go on at `now_us` on path `path_id`, or, if it `is_on`, stay on: for how many

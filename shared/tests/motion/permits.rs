@@ -155,29 +155,43 @@ fn a_tracker_that_falls_silent_shuts_the_beam_5_ms_after_the_last_path_state_it_
 
 #[test]
 fn a_permit_that_is_taken_back_shuts_the_beam_at_the_next_servo_tick() {
-    let (mut bench, mut under_way) = burning();
-    for _ in 0..40 {
-        answered(&mut bench, &mut under_way, Some(BeamPermit::Open));
+    for given_again in [false, true] {
+        let (mut bench, mut under_way) = burning();
+        for _ in 0..40 {
+            answered(&mut bench, &mut under_way, Some(BeamPermit::Open));
+        }
+        let mut told = |side| {
+            let answered = bench.path_state.expect("a path");
+            let permit = Permit {
+                tick: answered.tick,
+                path_id: answered.path_id,
+                sides: [side, BeamPermit::No],
+            };
+            let lease = bench
+                .controller
+                .datagram(&Datagram::Permit(permit), bench.now_us);
+            bench.servo.renew(lease.expect("a lease"));
+            bench.servo_tick();
+        };
+        told(BeamPermit::No);
+        if given_again {
+            told(BeamPermit::Open);
+        }
+        assert!(!bench.command.beam_gate[0] && bench.speed() > 100.0);
+        bench.stops_on_the_path_then_faults();
+        assert!(
+            matches!(
+                bench.fault(),
+                Some(Fault::PermitLost {
+                    side: 0,
+                    why: NoPermit::Refused,
+                    ..
+                })
+            ),
+            "given again: {given_again}, {:?}",
+            bench.fault()
+        );
     }
-    let path_id = bench.path_state.expect("a path").path_id;
-    let tick = bench.path_state.expect("a path").tick;
-    let lease = bench.controller.datagram(
-        &Datagram::Permit(Permit {
-            tick,
-            path_id,
-            sides: [BeamPermit::No; 2],
-        }),
-        bench.now_us,
-    );
-    bench.servo.renew(lease.expect("a lease"));
-    bench.servo_tick();
-    assert!(!bench.command.beam_gate[0] && bench.speed() > 100.0);
-    bench.stops_on_the_path_then_faults();
-    assert!(
-        matches!(bench.fault(), Some(Fault::PermitLost { side: 0, .. })),
-        "{:?}",
-        bench.fault()
-    );
 }
 
 #[test]

@@ -218,7 +218,8 @@ impl MotionController {
 
     /// Why one of the `gates` that are to be open in the next millisecond must be shut; a beam needs no permit where the
     /// path does not track.
-    pub(super) fn not_permitted(&self, gates: [bool; SIDES], report: &ServoReport) -> Option<Fault> {
+    pub(super) fn not_permitted(&mut self, gates: [bool; SIDES], report: &ServoReport) -> Option<Fault> {
+        let refused = self.permits.take_refused();
         if self.state != State::Running || !self.beams.tracking() {
             return None;
         }
@@ -226,8 +227,11 @@ impl MotionController {
         (0..SIDES).filter(|side| gates[*side]).find_map(|side| {
             let is_on = self.gates[side];
             let lease = self.permits.lease(self.path.id, side, is_on, self.tick_us);
-            let lapsed = report.lapsed[side].then_some(NoPermit::Silent);
-            let (why, side) = (lapsed.or(lease.err())?, side as u8);
+            let lapsed = report.lapsed[side].then_some(match refused[side] {
+                true => NoPermit::Refused,
+                false => NoPermit::Silent,
+            });
+            let (why, side) = (lease.err().or(lapsed)?, side as u8);
             Some(match is_on {
                 true => Fault::PermitLost { side, s_mm, why },
                 false => Fault::NotLocked { side, s_mm, why },
