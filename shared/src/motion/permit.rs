@@ -32,6 +32,8 @@ pub struct Permits {
     /// How long each is valid after the tick of the path state that it answers \[µs\].
     valid_us: u32,
     newest: Option<Newest>,
+    /// Path tick after which the last came, whatever it answered \[µs\].
+    heard_us: Option<u64>,
     /// What was refused since the last [`Permits::take_refused`].
     refused: [bool; SIDES],
 }
@@ -48,6 +50,7 @@ impl Permits {
     pub const NONE: Self = Self {
         valid_us: PERMIT_US,
         newest: None,
+        heard_us: None,
         refused: [false; SIDES],
     };
 
@@ -59,12 +62,14 @@ impl Permits {
     /// Forgets the newest.
     pub fn forget(&mut self) {
         self.newest = None;
+        self.heard_us = None;
         self.refused = [false; SIDES];
     }
 
     /// Takes a permit that has arrived after path tick `tick`, which was at `tick_us` of this board's clock. One
     /// that answers an older path state than the last one, or a tick that has not been, is left.
     pub fn take(&mut self, permit: &Permit, tick: u32, tick_us: u64) {
+        self.heard_us = Some(tick_us);
         let age = tick.wrapping_sub(permit.tick);
         let overtaken = self.newest.is_some_and(|newest| {
             let step = permit.tick.wrapping_sub(newest.permit.tick);
@@ -92,13 +97,23 @@ impl Permits {
     /// servo ticks.
     pub fn lease(&self, path_id: u32, side: usize, is_on: bool, now_us: u64) -> Result<u16, NoPermit> {
         let newest = self.newest.filter(|newest| newest.ends_us > now_us);
-        let newest = newest.ok_or(NoPermit::Silent)?;
+        let newest = newest.ok_or_else(|| self.none_valid(now_us))?;
         let side = newest.permit.sides[side];
         match side {
             _ if newest.permit.path_id != path_id => Err(NoPermit::Refused),
             BeamPermit::No => Err(NoPermit::Refused),
             BeamPermit::Keep if !is_on => Err(NoPermit::NotOnSeam),
             BeamPermit::Keep | BeamPermit::Open => Ok(((newest.ends_us - now_us) / SERVO_US) as u16),
+        }
+    }
+
+    /// Why no permit is valid at `now_us`.
+    fn none_valid(&self, now_us: u64) -> NoPermit {
+        // One that fell silent was heard before that: the last that it said was valid until now.
+        let lately_us = u64::from(self.valid_us / 2);
+        match self.heard_us {
+            Some(heard_us) if now_us < heard_us + lately_us => NoPermit::Outdated,
+            _ => NoPermit::Silent,
         }
     }
 }
@@ -124,6 +139,11 @@ mod tests {
         assert_eq!(permits.lease(7, 0, false, 1_000_300), Ok(10));
         assert_eq!(permits.lease(7, 0, false, 1_002_751), Ok(0));
         assert_eq!(permits.lease(7, 0, true, 1_003_000), Err(NoPermit::Silent));
+        // The same answer again is no newer for that.
+        permits.take(&permit(98, BeamPermit::Open), 103, 1_003_000);
+        assert_eq!(permits.lease(7, 0, true, 1_005_499), Err(NoPermit::Outdated));
+        assert_eq!(permits.lease(7, 0, true, 1_005_500), Err(NoPermit::Silent));
+        permits.take(&permit(101, BeamPermit::Open), 103, 1_003_000);
         assert_eq!(permits.lease(7, 1, true, 1_000_300), Err(NoPermit::Refused));
         assert_eq!(permits.lease(8, 0, true, 1_000_300), Err(NoPermit::Refused));
     }

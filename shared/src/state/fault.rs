@@ -242,4 +242,10 @@ pub enum NoPermit {
     /// The seam is followed, but the spot is not on it.
     #[error("its slides are not on the seam yet")]
     NotOnSeam,
+    /// Permits come, but what they answer is too old.
+    #[error(
+        "the tracker board answers only where the machine was before: what it is told now is lost, late, or jumps \
+         faster than its slides can go, as with axes that swing"
+    )]
+    Outdated,
 }

@@ -154,6 +154,41 @@ fn a_tracker_that_falls_silent_shuts_the_beam_5_ms_after_the_last_path_state_it_
 }
 
 #[test]
+fn a_tracker_that_answers_only_where_the_machine_was_before_is_told_from_one_that_is_silent() {
+    let (mut bench, mut under_way) = burning();
+    for _ in 0..40 {
+        answered(&mut bench, &mut under_way, Some(BeamPermit::Open));
+    }
+    let before = bench.path_state.expect("a path");
+    let permit = Permit {
+        tick: before.tick,
+        path_id: before.path_id,
+        sides: [BeamPermit::Open; 2],
+    };
+    for ms in 0..=PERMIT_US / 1000 + 1 {
+        if let Some(lease) = bench.controller.datagram(&Datagram::Permit(permit), bench.now_us) {
+            bench.servo.renew(lease);
+        }
+        bench.run_ms(1);
+        assert!(ms >= PERMIT_US / 1000 - 1 || bench.command.beam_gate[0], "{ms}");
+    }
+    assert!(!bench.command.beam_gate[0] && bench.speed() > 50.0);
+    bench.stops_on_the_path_then_faults();
+    assert!(
+        matches!(
+            bench.fault(),
+            Some(Fault::PermitLost {
+                side: 0,
+                why: NoPermit::Outdated,
+                ..
+            })
+        ),
+        "{:?}",
+        bench.fault()
+    );
+}
+
+#[test]
 fn a_permit_that_is_taken_back_shuts_the_beam_at_the_next_servo_tick() {
     for given_again in [false, true] {
         let (mut bench, mut under_way) = burning();
@@ -167,9 +202,7 @@ fn a_permit_that_is_taken_back_shuts_the_beam_at_the_next_servo_tick() {
                 path_id: answered.path_id,
                 sides: [side, BeamPermit::No],
             };
-            let lease = bench
-                .controller
-                .datagram(&Datagram::Permit(permit), bench.now_us);
+            let lease = bench.controller.datagram(&Datagram::Permit(permit), bench.now_us);
             bench.servo.renew(lease.expect("a lease"));
             bench.servo_tick();
         };

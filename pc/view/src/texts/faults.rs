@@ -409,6 +409,13 @@ impl Words {
                 "其滑台尚未到达焊缝",
                 "ihre Schlitten sind noch nicht auf der Naht"
             ),
+            NoPermit::Outdated => say!(
+                self.0,
+                why,
+                "跟踪板只回答机床先前的位置：现在的信息丢失、迟到，或变化快于滑台所能（如轴在振动）",
+                "die Trackerkarte antwortet nur auf frühere Orte der Maschine: was sie jetzt erfährt, ging verloren, kommt zu spät oder \
+                 springt schneller, als ihre Schlitten können, wie bei Achsen, die schwingen"
+            ),
         }
     }
 

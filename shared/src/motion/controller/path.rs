@@ -227,6 +227,7 @@ impl MotionController {
         (0..SIDES).filter(|side| gates[*side]).find_map(|side| {
             let is_on = self.gates[side];
             let lease = self.permits.lease(self.path.id, side, is_on, self.tick_us);
+            // Shut between two path ticks: refused, or the last one told had ended.
             let lapsed = report.lapsed[side].then_some(match refused[side] {
                 true => NoPermit::Refused,
                 false => NoPermit::Silent,
