@@ -106,6 +106,16 @@ impl Sets {
         }
         parameters::replace(text, &parameter, typed)
     }
+
+    /// `text` without the set called `name`.
+    pub fn without(self, text: &str, name: &str) -> String {
+        let removed = match self {
+            Self::Tools => parameters::remove(text, &[TOOLS, name]),
+            Self::WeldData => parameters::remove(text, &[name]),
+        };
+        // What is no TOML has no sets.
+        removed.unwrap_or_else(|_| text.to_owned())
+    }
 }
 
 /// The machine file `text` with a tool of this number, of no length and diameter.
@@ -116,10 +126,20 @@ pub fn with_tool(text: &str, number: u32) -> String {
         .fold(text.to_owned(), |text, key| insert(&text, &name, key, 0.0))
 }
 
-/// The machine file `text` without the tool called `name`.
-pub fn without_tool(text: &str, name: &str) -> String {
-    // What is no TOML has no tools.
-    parameters::remove(text, &[TOOLS, name]).unwrap_or_else(|_| text.to_owned())
+/// The weld data `text` with a set called `name`, which has what the one called `of` has; of no power where there is none of these.
+pub fn with_weld_data(text: &str, name: &str, of: &str) -> String {
+    let is_there = Sets::WeldData.names(text).iter().any(|set| set == of);
+    let new = match is_there {
+        true => parameters::copy(text, of, name),
+        false => parameters::insert(text, &[name], "power", 0.0),
+    };
+    new.unwrap_or_else(|_| text.to_owned())
+}
+
+/// Whether a program can call a set of weld data by `name`.
+pub fn is_name(name: &str) -> bool {
+    let may = |letter: char| letter.is_alphanumeric() || letter == '_' || letter == '-';
+    !name.is_empty() && name.chars().all(may)
 }
 
 fn insert(text: &str, tool: &str, key: &str, number: f64) -> String {
@@ -233,7 +253,7 @@ mod tests {
             .unwrap();
         let ten = called(Sets::Tools, &longer, "10");
         assert_eq!(value(&ten, "length_mm"), ("12.5", "mm"));
-        let without = without_tool(&without_tool(&longer, "10"), "2");
+        let without = Sets::Tools.without(&Sets::Tools.without(&longer, "10"), "2");
         assert_eq!(without, MACHINE);
 
         // However they are written; what is left out is put in.
@@ -250,7 +270,44 @@ mod tests {
             assert!(new.contains("# mine") && new.contains("c = 2"), "{new}");
             let one_more = with_tool(text, 4);
             assert_eq!(Sets::Tools.list(&one_more).len(), 2, "{one_more}");
-            assert!(Sets::Tools.list(&without_tool(&one_more, "4")).len() == 1);
+            assert!(Sets::Tools.list(&Sets::Tools.without(&one_more, "4")).len() == 1);
         }
+    }
+
+    #[test]
+    fn a_new_set_has_what_another_one_has_and_everything_else_of_the_file_stays_to_the_letter() {
+        let with = with_weld_data(WELDS, "hot-root", "root");
+        assert!(with.starts_with(WELDS), "{with}");
+        assert!(Sets::WeldData.check("w.toml", &with).is_ok(), "{with}");
+        let values = |name: &str| {
+            let set = called(Sets::WeldData, &with, name);
+            let values = set.parameters.into_iter();
+            values.map(|one| (one.name, one.value)).collect::<Vec<_>>()
+        };
+        assert_eq!(values("hot-root"), values("root"));
+        // The file is as it was but for a line that is empty.
+        assert_eq!(
+            Sets::WeldData.without(&with, "hot-root").trim_end(),
+            WELDS.trim_end()
+        );
+        // However it is written, and also where it is the last line that is not ended.
+        for text in [
+            "a = { power = 2.0 }",
+            "[a]\npower = 2.0\n[a.ramp_up]\npower = 3.0\nover_mm = 1.0\n[b]\npower = 1.0",
+            "[a] # mine\r\npower = 2.0\r\n[[a.tacks]]\r\nfrom_mm = 1.0\r\nto_mm = 2.0\r\n",
+        ] {
+            let with = with_weld_data(text, "c", "a");
+            assert!(with.starts_with(text), "{with}");
+            let set = |name: &str| {
+                let values = called(Sets::WeldData, &with, name).parameters.into_iter();
+                values.map(|one| (one.name, one.value)).collect::<Vec<_>>()
+            };
+            assert_eq!(set("c"), set("a"), "{with}");
+            assert!(Sets::WeldData.check("w.toml", &with).is_ok(), "{with}");
+        }
+        let first = with_weld_data("", "root", "");
+        assert_eq!(first, "[root]\npower = 0.0\n");
+        assert!(Sets::WeldData.check("w.toml", &first).is_ok());
+        assert!(is_name("hot-root_2") && !is_name("") && !is_name("a b") && !is_name("a.b"));
     }
 }

@@ -15,6 +15,8 @@ pub struct Edited {
     loaded: String,
     /// The same with what was changed.
     text: String,
+    /// There was none yet.
+    is_new: bool,
 }
 
 impl Edited {
@@ -32,6 +34,25 @@ impl Edited {
             file,
             loaded,
             text,
+            is_new: false,
+        })
+    }
+
+    /// The same, or an empty text where there is no such file yet.
+    ///
+    /// # Errors
+    /// A sentence: there is one, and it cannot be read.
+    pub fn open_or_new(what: &'static str, file: &Path) -> anyhow::Result<Self> {
+        // A link to nowhere is no missing file.
+        if file.symlink_metadata().is_ok() {
+            return Self::open(what, file);
+        }
+        Ok(Self {
+            what,
+            file: file.to_owned(),
+            loaded: String::new(),
+            text: String::new(),
+            is_new: true,
         })
     }
 
@@ -68,12 +89,15 @@ impl Edited {
 
     /// Whether the file on the disk is another one than was loaded.
     pub fn is_stale(&self) -> bool {
+        if self.is_new {
+            return self.file.symlink_metadata().is_ok();
+        }
         std::fs::read_to_string(&self.file).ok().as_ref() != Some(&self.loaded)
     }
 
-    /// Where what is in the file now will be kept.
-    pub fn next_version(&self) -> PathBuf {
-        kept::next_version(&self.file)
+    /// Where what is in the file now will be kept; `None` where there is none yet.
+    pub fn next_version(&self) -> Option<PathBuf> {
+        (!self.is_new).then(|| kept::next_version(&self.file))
     }
 
     /// The text of another file, such as a version that is kept.
@@ -84,11 +108,11 @@ impl Edited {
         std::fs::read_to_string(file).with_context(|| cannot("read", self.what, file))
     }
 
-    /// Writes the text in the place of what was loaded; where that is kept is returned.
+    /// Writes the text in the place of what was loaded; where that is kept is returned, if there was any.
     ///
     /// # Errors
     /// A sentence: nothing is changed, or the file on the disk was changed or cannot be written.
-    pub fn write(&mut self) -> anyhow::Result<PathBuf> {
+    pub fn write(&mut self) -> anyhow::Result<Option<PathBuf>> {
         let file = self.file.display();
         if !self.is_changed() {
             bail!("nothing is changed");
@@ -96,10 +120,13 @@ impl Edited {
         if self.is_stale() {
             bail!("{file} has changed since it was loaded; it is not written over");
         }
-        let version = kept::keep_version(&self.file, &self.loaded)
+        let version = (!self.is_new).then(|| kept::keep_version(&self.file, &self.loaded));
+        let version = version
+            .transpose()
             .with_context(|| format!("cannot keep a version of {file}"))?;
         kept::replace(&self.file, &self.text).with_context(|| cannot("write", self.what, &self.file))?;
         self.loaded.clone_from(&self.text);
+        self.is_new = false;
         Ok(version)
     }
 }

@@ -7,7 +7,7 @@ use config::parameters::{
     Change, EditError, Kind, Parameter, Table, changes, differing, is_same, list_elements, unit,
 };
 use config::sentence;
-use config::sets::{OF_TOOL, Sets, with_tool, without_tool};
+use config::sets::{OF_TOOL, Sets, is_name, with_tool, with_weld_data};
 use std::path::{Path, PathBuf};
 
 /// Sets of a file.
@@ -36,12 +36,15 @@ pub struct Value {
 }
 
 impl EditedSets {
-    /// Those of the file at `file`.
+    /// Those of the file at `file`; weld data need not have one yet.
     ///
     /// # Errors
     /// A sentence: it cannot be read, or its reader refuses it.
     pub fn open(kind: Sets, file: &Path) -> anyhow::Result<Self> {
-        let text = Edited::open(kind.what(), file)?;
+        let text = match kind {
+            Sets::Tools => Edited::open(kind.what(), file),
+            Sets::WeldData => Edited::open_or_new(kind.what(), file),
+        }?;
         let mut sets = Self {
             kind,
             before: kind.list(text.loaded()),
@@ -117,8 +120,8 @@ impl EditedSets {
         self.text.is_stale()
     }
 
-    /// Where what is in the file now will be kept.
-    pub fn next_version(&self) -> PathBuf {
+    /// Where what is in the file now will be kept; `None` where there is none yet.
+    pub fn next_version(&self) -> Option<PathBuf> {
         self.text.next_version()
     }
 
@@ -142,16 +145,33 @@ impl EditedSets {
         Ok(())
     }
 
-    /// Another tool, of no length and diameter. One that is there stays as it is.
-    pub fn add_tool(&mut self, number: u32) {
-        if !self.names().any(|name| name == number.to_string()) {
-            self.take(with_tool(self.text.text(), number));
-        }
+    /// Whether what was `typed` is the name of another set: the number of a tool, or what a program can call.
+    pub fn is_new(&self, typed: &str) -> bool {
+        let may = match self.kind {
+            Sets::Tools => typed
+                .parse::<u32>()
+                .is_ok_and(|number| number.to_string() == typed && number > 0),
+            Sets::WeldData => is_name(typed),
+        };
+        may && !self.names().any(|name| name == typed)
     }
 
-    /// Takes the tool called `name` out.
-    pub fn remove_tool(&mut self, name: &str) {
-        self.take(without_tool(self.text.text(), name));
+    /// Another set, if [`EditedSets::is_new`]: a tool of no length and diameter, or weld data as those called `of`.
+    pub fn add(&mut self, name: &str, of: &str) {
+        if !self.is_new(name) {
+            return;
+        }
+        let text = self.text.text();
+        let with = match (self.kind, name.parse()) {
+            (Sets::Tools, Ok(number)) => with_tool(text, number),
+            _ => with_weld_data(text, name, of),
+        };
+        self.take(with);
+    }
+
+    /// Takes the set called `name` out.
+    pub fn remove(&mut self, name: &str) {
+        self.take(self.kind.without(self.text.text(), name));
     }
 
     /// Writes the changes: keeps what was there before as a version, and puts the new text in its place.

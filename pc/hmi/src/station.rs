@@ -308,9 +308,12 @@ impl Station {
 
     /// Has on record what was written to `file`, and reads the program anew.
     fn told_written(&mut self, now: Duration, file: &Path, written: &Written) {
-        let (file, version) = (file.display(), written.version.display());
-        let journal = &mut self.live.journal;
-        journal.written(now, &file.to_string(), &version.to_string(), &written.changes);
+        let file = file.display().to_string();
+        let version = written
+            .version
+            .as_ref()
+            .map(|version| version.display().to_string());
+        self.live.journal.written(now, file, version, &written.changes);
         self.load_again();
     }
 

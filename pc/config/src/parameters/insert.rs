@@ -26,6 +26,27 @@ pub fn insert(text: &str, tables: &[&str], key: &str, number: f64) -> Result<Str
     Ok(document.to_string())
 }
 
+/// `text` with another table called `name` at its end, which has what the one called `of` has, and nothing where there is no such
+/// table.
+///
+/// # Errors
+/// It is no TOML.
+pub fn copy(text: &str, of: &str, name: &str) -> Result<String, TomlError> {
+    let document: DocumentMut = text.parse()?;
+    let of = document.get(of).cloned();
+    let mut table = of.and_then(|of| of.into_table().ok()).unwrap_or_default();
+    // The comment over it is that of the other one.
+    table.decor_mut().clear();
+    let mut end = DocumentMut::new();
+    end.insert(name, Item::Table(table));
+    let gap = match text {
+        "" => "",
+        text if text.ends_with('\n') => "\n",
+        _ => "\n\n",
+    };
+    Ok(format!("{text}{gap}{end}"))
+}
+
 /// `text` without the table with these names, from outside inwards, and without the comment on it.
 ///
 /// # Errors

@@ -33,8 +33,8 @@ pub struct Parameters {
 pub struct Written {
     /// The values.
     pub changes: Vec<Change>,
-    /// Where what was there before is kept.
-    pub version: PathBuf,
+    /// Where what was there before is kept, if there was any.
+    pub version: Option<PathBuf>,
 }
 
 impl Parameters {

@@ -77,8 +77,9 @@ fn what_is_written_differs_by_the_change_alone_and_the_version_before_can_be_had
     parameters.set(KEY, "40000").unwrap();
     let written = parameters.write().unwrap();
     assert_eq!(written.changes.len(), 1);
-    assert_eq!(written.version.file_name().unwrap(), "m.toml.0001");
-    assert_eq!(std::fs::read_to_string(&written.version).unwrap(), before);
+    let version = written.version.unwrap();
+    assert_eq!(version.file_name().unwrap(), "m.toml.0001");
+    assert_eq!(std::fs::read_to_string(&version).unwrap(), before);
     assert_eq!(
         on_disk(&parameters),
         before.replacen("max_jerk = 30000.0", "max_jerk = 40000.0", 1)

@@ -38,7 +38,7 @@ impl Parameters {
     }
 
     /// Where what is in the file now will be kept.
-    pub fn next_version(&self) -> PathBuf {
+    pub fn next_version(&self) -> Option<PathBuf> {
         self.text.next_version()
     }
 }

@@ -21,8 +21,14 @@ pub(super) enum Answer {
     Cancel,
 }
 
-/// Asks whether to write what `list` lists to `file`, of which what is there now is kept as `version`.
-pub(super) fn ask(ui: &Ui, view: &View, file: &Path, version: &Path, list: impl FnOnce(&mut Ui)) -> Answer {
+/// Asks whether to write what `list` lists to `file`, of which what is there now, if anything, is kept as `version`.
+pub(super) fn ask(
+    ui: &Ui,
+    view: &View,
+    file: &Path,
+    version: Option<&Path>,
+    list: impl FnOnce(&mut Ui),
+) -> Answer {
     let words = view.words;
     let mut answer = Answer::Nothing;
     let modal = Modal::new(Id::unique("write")).show(ui.ctx(), |ui| {
@@ -31,8 +37,7 @@ pub(super) fn ask(ui: &Ui, view: &View, file: &Path, version: &Path, list: impl 
         ui.add_space(8.0);
         ScrollArea::vertical().max_height(LIST).show(ui, list);
         ui.add_space(8.0);
-        ui.add(Label::new(words.with(Text::WriteKeeps, &[&name(version)])).wrap());
-        ui.add(Label::new(words.say(Text::WriteThen)).wrap());
+        then(ui, view, version);
         ui.add_space(12.0);
         ui.horizontal(|ui| {
             let text = RichText::new(words.say(Text::WriteNow))
@@ -52,6 +57,15 @@ pub(super) fn ask(ui: &Ui, view: &View, file: &Path, version: &Path, list: impl 
         Answer::Nothing if modal.should_close() => Answer::Cancel,
         answer => answer,
     }
+}
+
+/// What becomes of what is in the file now, if there is one, and of the program.
+pub(super) fn then(ui: &mut Ui, view: &View, version: Option<&Path>) {
+    let words = view.words;
+    if let Some(version) = version {
+        ui.add(Label::new(words.with(Text::WriteKeeps, &[&name(version)])).wrap());
+    }
+    ui.add(Label::new(words.say(Text::WriteThen)).wrap());
 }
 
 /// The changes, a line each; `is_changed` the file may be without any.

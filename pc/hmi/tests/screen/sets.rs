@@ -206,11 +206,88 @@ fn without_sets_it_is_said_how_they_are_made_and_a_file_that_is_wrong_is_told_by
     assert!(bench.says("There are no sets yet.") && bench.says("WELDON=root") && is_greyed(&bench, "Write…"));
     bench.pictures("no-weld-data", |_| {});
     bench.tap("Cancel");
-    std::fs::write(
-        bench.folder.path().join("welddata.toml"),
-        "[root]\npower = -1.0\n",
-    )
-    .expect("written");
+    let file = bench.folder.path().join("welddata.toml");
+    std::fs::write(&file, "[root]\npower = -1.0\n").expect("written");
     bench.tap("Weld data…");
     assert!(bench.says("root.power is -1, but must be 0 or more"));
+}
+
+#[test]
+fn the_first_set_makes_the_file_and_what_somebody_else_has_made_meanwhile_is_not_written_over() {
+    let mut bench = Bench::new();
+    let program = bench.folder.path().join("square.ngc");
+    std::fs::write(&program, "G21 G90\nG0 X900 Y900 Z120 A0 B0 C0\nM2\n").expect("written");
+    bench.load(program.to_str().expect("a name"));
+    let file = bench.folder.path().join("welddata.toml");
+    let first = |bench: &mut Bench| {
+        bench.open(Page::SetUp);
+        bench.tap("Weld data…");
+        keys(bench, "two words");
+        assert!(is_greyed(bench, "New set with this name"));
+        keys(bench, "first-pass");
+        bench.tap("New set with this name");
+        choose(bench, "power");
+        keys(bench, "2500");
+        bench.tap("Set to value");
+        bench.tap("Write…");
+        assert!(bench.says("first-pass.power: left out → 2500.0") && !bench.says("is kept as"));
+    };
+    first(&mut bench);
+    std::fs::write(&file, "[theirs]\npower = 1.0\n").expect("written");
+    bench.tap("Write now");
+    assert!(bench.says("The file on the disk has changed since it was loaded."));
+    assert_eq!(text(&file), "[theirs]\npower = 1.0\n");
+    bench.tap("Cancel");
+    std::fs::remove_file(&file).expect("removed");
+    first(&mut bench);
+    bench.tap("Write now");
+    assert_eq!(text(&file), "[first-pass]\npower = 2500.0\n");
+    assert!(!file.with_file_name("welddata.toml.0001").exists());
+    bench.until("the program is planned anew", |station| {
+        station.loaded().is_some()
+    });
+    bench.open(Page::Alarms);
+    assert!(bench.says("welddata.toml made") && bench.says("first-pass.power: left out → 2500.0"));
+}
+
+#[test]
+fn a_new_set_begins_as_the_one_that_is_chosen_and_sets_are_taken_out() {
+    let (mut bench, _file) = Bench::with_own_file_of("wire-arc");
+    let program = own_job(&bench);
+    let file = bench.folder.path().join("welddata.toml");
+    let before = text(&file);
+    bench.load(program.to_str().expect("a name"));
+    bench.open(Page::SetUp);
+    bench.tap("Weld data…");
+    bench.tap("root");
+    keys(&mut bench, "cap");
+    assert!(is_greyed(&bench, "New set with this name"));
+    keys(&mut bench, "hot-root");
+    bench.tap("New set with this name");
+    bench.tap("● hot-root");
+    choose(&mut bench, "power");
+    keys(&mut bench, "3500");
+    bench.tap("Set to value");
+    bench.tap("Write…");
+    bench.tap("Write now");
+    bench.until("the program is planned anew", |station| {
+        station.loaded().is_some()
+    });
+    let loaded = bench.station().loaded().expect("a program").clone();
+    let sets = &loaded.machine.welding.sets;
+    assert_eq!((sets["root"].power, sets["hot-root"].power), (3200.0, 3500.0));
+    assert_eq!(sets["hot-root"].tacks, sets["root"].tacks);
+    assert!(text(&file).starts_with(&before));
+
+    // What the program calls is told to be missing, as soon as it is.
+    bench.tap("Weld data…");
+    bench.tap("hot-root");
+    bench.tap("Take set out");
+    bench.tap("cap");
+    bench.tap("Take set out");
+    bench.tap("Write…");
+    assert!(bench.says("hot-root.power: 3500.0 → left out") && bench.says("cap.power: 3600.0 → left out"));
+    bench.tap("Write now");
+    bench.until("the program is planned anew", |station| !station.is_loading());
+    assert!(bench.says("cap") && bench.station().refused().is_some());
 }

@@ -66,7 +66,9 @@ pub enum What {
     TrackerFault(TrackerFault),
     /// The operator has stopped the job.
     Stopped,
-    /// The machine file was written: its name, and where what was there before is kept.
+    /// A file was written that was not there before: its name.
+    FileMade(String),
+    /// A file was written: its name, and where what was there before is kept.
     FileWritten(String, String),
     /// With another value of a parameter.
     Parameter(Change),
@@ -200,9 +202,12 @@ impl Journal {
         }
     }
 
-    /// The machine `file` was written with `changes`; what was there before is in `version`.
-    pub fn written(&mut self, at: Duration, file: &str, version: &str, changes: &[Change]) {
-        let what = What::FileWritten(file.to_owned(), version.to_owned());
+    /// `file` was written with `changes`; what was there before, if anything, is in `version`.
+    pub fn written(&mut self, at: Duration, file: String, version: Option<String>, changes: &[Change]) {
+        let what = match version {
+            Some(version) => What::FileWritten(file, version),
+            None => What::FileMade(file),
+        };
         self.add(at, Severity::Note, what);
         self.changed(at, changes);
     }

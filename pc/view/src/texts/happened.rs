@@ -16,6 +16,7 @@ impl Words {
             What::TrackerFault(fault) => self.tracker_fault(fault),
             What::Stopped => self.say(Text::StoppedByOperator).to_owned(),
             What::FileWritten(file, version) => self.with(Text::FileWritten, &[file, version]),
+            What::FileMade(file) => self.with(Text::FileMade, &[file]),
             What::Parameter(change) => self.change(change),
             What::Access(event) => self.access(*event),
             What::RecordUnwritten(error) => self.with(Text::RecordUnwritten, &[error]),

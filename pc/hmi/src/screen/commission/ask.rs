@@ -3,7 +3,7 @@
 use super::circle::named;
 use super::words::unit;
 use super::{CommissionPage, Over, name_of, say};
-use crate::screen::View;
+use crate::screen::{View, writing};
 use crate::station::{Action, Station};
 use crate::texts::Text;
 use commission::excitations;
@@ -139,9 +139,7 @@ impl CommissionPage {
                     );
                 }
             });
-            let version = name_of(&parameters.next_version());
-            ui.add(Label::new(words.with(Text::WriteKeeps, &[&version])).wrap());
-            ui.add(Label::new(words.say(Text::WriteThen)).wrap());
+            writing::then(ui, view, parameters.next_version().as_deref());
         });
         let (offered, is_other) = (proposal.offered, chosen != proposal.chosen);
         if answer == Answer::Yes {

@@ -14,7 +14,7 @@ impl ParametersPage {
     pub(super) fn ask_to_write(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
         let Some(parameters) = &self.opened else { return };
         let version = parameters.next_version();
-        let answer = writing::ask(ui, view, parameters.file(), &version, |ui| {
+        let answer = writing::ask(ui, view, parameters.file(), version.as_deref(), |ui| {
             writing::changes(ui, view, parameters.changes(), parameters.is_changed());
             for weakened in parameters.weakened() {
                 let text = view.words.with(Text::Weakened, &[weakened]);

@@ -25,7 +25,7 @@ const EXAMPLE: &str = "[root]\npower = 3200.0\npre_flow_s = 0.5\nramp_up = { pow
 
 /// What is being set.
 pub(super) struct Dialog {
-    /// `None` where there is no file of them.
+    /// `None` where there is no program that they would be beside.
     sets: Option<EditedSets>,
     kind: Sets,
     /// Name of a set.
@@ -53,8 +53,10 @@ impl Dialog {
     /// # Errors
     /// A sentence: it cannot be read.
     pub fn open(kind: Sets, station: &Station) -> Result<Self, String> {
-        let file = station.file_of(kind).filter(|file| file.exists());
-        let sets = file.map(|file| EditedSets::open(kind, &file)).transpose();
+        let sets = station
+            .file_of(kind)
+            .map(|file| EditedSets::open(kind, &file))
+            .transpose();
         let sets = sets.map_err(|error| sentence(error.as_ref()))?;
         let mut dialog = Self {
             sets,
@@ -96,10 +98,8 @@ impl Dialog {
                 ui.allocate_ui(vec2(WIDTH - pad::WIDTH - 48.0, HEIGHTS[1]), |ui| {
                     ui.vertical(|ui| {
                         self.values(ui, view);
-                        if self.kind == Sets::Tools {
-                            ui.add_space(16.0);
-                            self.tools(ui, view);
-                        }
+                        ui.add_space(16.0);
+                        self.more_or_less(ui, view);
                     });
                 });
                 ui.add_space(16.0);
@@ -121,7 +121,7 @@ impl Dialog {
     fn ask(&mut self, ui: &Ui, view: &View, station: &mut Station) -> bool {
         let Some(sets) = &mut self.sets else { return false };
         let version = sets.next_version();
-        let answer = writing::ask(ui, view, sets.file(), &version, |ui| {
+        let answer = writing::ask(ui, view, sets.file(), version.as_deref(), |ui| {
             writing::changes(ui, view, sets.changes(), sets.is_changed());
         });
         self.asks = answer == Answer::Nothing;
@@ -242,9 +242,6 @@ impl Dialog {
 
     fn pad(&mut self, ui: &mut Ui, view: &View) {
         let Some(sets) = &mut self.sets else { return };
-        if self.kind == Sets::WeldData && sets.names().next().is_none() {
-            return;
-        }
         pad::show(ui, view, &mut self.typed, "");
         let typed = self.typed.trim();
         let may = !typed.is_empty() && !self.chosen.is_empty();
@@ -261,19 +258,24 @@ impl Dialog {
         }
     }
 
-    /// Another tool, or one less.
-    fn tools(&mut self, ui: &mut Ui, view: &View) {
+    /// Another set, or one less.
+    fn more_or_less(&mut self, ui: &mut Ui, view: &View) {
         let Some(sets) = &mut self.sets else { return };
-        let number = self.typed.trim().parse::<u32>().ok();
-        let free = |number: &u32| *number > 0 && !sets.names().any(|name| name == number.to_string());
-        let new = number.filter(free);
-        let is_new = pad::sets(ui, view, Text::NewTool, new.is_some());
-        let is_removed = pad::sets(ui, view, Text::RemoveTool, !self.set.is_empty());
-        if let Some(number) = new.filter(|_| is_new) {
-            sets.add_tool(number);
-            self.choose_set(&number.to_string());
+        let (more, less) = match self.kind {
+            Sets::Tools => (Text::NewTool, Text::RemoveTool),
+            Sets::WeldData => (Text::NewWeldData, Text::RemoveWeldData),
+        };
+        let name = self.typed.trim().to_owned();
+        let (mut is_added, mut is_removed) = (false, false);
+        ui.horizontal(|ui| {
+            is_added = pad::sets(ui, view, more, sets.is_new(&name));
+            is_removed = pad::sets(ui, view, less, !self.set.is_empty());
+        });
+        if is_added {
+            sets.add(&name, &self.set);
+            self.choose_set(&name);
         } else if is_removed {
-            sets.remove_tool(&self.set);
+            sets.remove(&self.set);
             self.choose_first();
         }
     }
