@@ -8,7 +8,7 @@ pub use stream::{Events, Interest, NoEvent, Received, Subscription};
 
 use serde::{Deserialize, Serialize};
 use shared::protocol::{
-    Capture, Identity, Measurement, MotionSample, MotionStatus, TrackerSample, TrackerStatus,
+    Capture, Identity, Measurement, MotionSample, MotionStatus, SideMeasurement, TrackerSample, TrackerStatus,
 };
 use shared::state::{Fault, TrackerFault};
 use std::sync::Arc;
@@ -115,6 +115,8 @@ pub struct MeasuredPicture {
     pub pixels: Vec<u8>,
     /// The seam, if one is accepted.
     pub seam: Option<SeamInPicture>,
+    /// Where the seam is from the spot, as the tracker is told it.
+    pub measurement: Option<SideMeasurement>,
     /// How sharp it is.
     pub focus: Focus,
 }

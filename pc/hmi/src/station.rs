@@ -5,6 +5,7 @@ mod commissioning;
 mod guarded;
 mod lessons;
 pub mod sets;
+mod sighted;
 mod work_offsets;
 
 use crate::access::Access;

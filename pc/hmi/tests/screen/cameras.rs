@@ -4,8 +4,6 @@ use crate::bench::{Bench, PROGRAM, waits};
 use hmi::screen::Page;
 use hmi::station::Station;
 use host_link::events::Focus;
-use host_link::{ByHand, Command};
-use std::time::Duration;
 
 /// Of the newest picture of camera 1: its capture, and by how much its seam is out of focus \[mm\].
 fn defocus(station: &Station) -> Option<(u32, f64)> {
@@ -32,17 +30,6 @@ fn next_defocus(bench: &mut Bench) -> f64 {
     defocus(bench.station()).expect("a seam").1
 }
 
-/// Has `block` carried out, which may move so little that it is over before anybody looks.
-fn carry_out(bench: &mut Bench, block: &str) {
-    let place = |station: &Station| station.live.motion.as_ref().map(|motion| motion.reference);
-    let before = place(bench.station());
-    let command = Command::ByHand(ByHand::Block(block.to_owned()));
-    bench.station().send(command, Duration::ZERO);
-    bench.until("it has moved", |station| {
-        waits(station) && place(station) != before
-    });
-}
-
 #[test]
 fn by_hand_the_cameras_are_live_and_tell_how_far_and_to_which_side_the_work_is_out_of_focus() {
     let mut bench = Bench::new();
@@ -57,8 +44,8 @@ fn by_hand_the_cameras_are_live_and_tell_how_far_and_to_which_side_the_work_is_o
     assert!(bench.says("Sharpness 0.0, best 0.0"));
 
     // Where the drawing has the seam, one camera's lead before it.
-    carry_out(&mut bench, "G0 X400 Y300 Z250 A0 B0 C11.2233");
-    carry_out(&mut bench, "G0 Z96.536");
+    bench.block("G0 X400 Y300 Z250 A0 B0 C11.2233");
+    bench.block("G0 Z96.536");
     bench.until("the seam is seen", |station| {
         station.live.pictures[0]
             .as_ref()
@@ -67,12 +54,12 @@ fn by_hand_the_cameras_are_live_and_tell_how_far_and_to_which_side_the_work_is_o
     bench.pictures("cameras", |_| {});
     let before = next_defocus(&mut bench);
     // The camera comes nearer, by which the work is higher than its focus.
-    carry_out(&mut bench, "G91 G1 Z-0.05 F60");
+    bench.block("G91 G1 Z-0.05 F60");
     let nearer = next_defocus(&mut bench);
     assert!((nearer - before - 0.05).abs() < 0.01, "{before} {nearer}");
 
     // The best is held, until somebody taps on it.
-    carry_out(&mut bench, "G91 G1 Z20 F2000");
+    bench.block("G91 G1 Z20 F2000");
     bench.until("nothing is sharp", |station| defocus(station).is_none());
     bench.until("it is far away", |station| {
         let picture = station.live.pictures[0].as_ref();

@@ -21,6 +21,7 @@ pub(super) fn tell(events: &Events, side: usize, picture: &Picture, seen: &Measu
         seam: seen
             .observation
             .and_then(|observation| seam(&observation, optics)),
+        measurement: seen.measurement,
         focus: seen
             .observation
             .map_or(Focus::Nothing, |observation| focus(&observation.report)),

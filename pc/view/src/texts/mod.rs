@@ -217,6 +217,9 @@ texts! {
     TurnAboutZ: "Turn about Z", "绕 Z 旋转", "Drehung um Z";
     Value: "Value", "数值", "Wert";
     OriginIs: "Set origin to value", "将原点设为数值", "Ursprung auf Wert";
+    SeamIn: "Seam {} in {}, by its camera", "焊缝 {}（摄像机测得）在 {} 中", "Naht {} in {}, nach ihrer Kamera";
+    SeamIs: "Set seam {} to value", "将焊缝 {} 设为数值", "Naht {} auf Wert";
+    NoSeamInPicture: "no seam in the picture", "图像中没有焊缝", "keine Naht im Bild";
     TipIs: "Set tip here to value", "将此处刀尖设为数值", "Spitze hier auf Wert";
     NotAnOffset: "Not a number from -100000 to 100000.", "不是 -100000 到 100000 之间的数。", "Keine Zahl von -100000 bis 100000.";
     Save: "Save", "保存", "Speichern";

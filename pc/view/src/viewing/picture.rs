@@ -84,7 +84,8 @@ impl SentPicture {
             columns: pixels.width() as usize,
             pixels: pixels.into_raw(),
             seam: self.seam,
-            // Viewers have no page that shows it.
+            // Viewers have no page that shows these.
+            measurement: None,
             focus: Focus::default(),
         })
     }
@@ -122,6 +123,7 @@ mod tests {
                 quality: 0.9,
                 edges: [ends; 2],
             }),
+            measurement: None,
             focus: Focus::default(),
         }
     }

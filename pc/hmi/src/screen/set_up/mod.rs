@@ -6,6 +6,7 @@ mod homing;
 mod pad;
 mod positions;
 mod sets;
+mod sightings;
 mod work_offsets;
 
 use super::{View, access, bare, jog, title};

@@ -37,7 +37,11 @@ pub(super) fn show(ui: &mut Ui, view: &View, typed: &mut String, hint: &str) {
 
 /// A button for what is done with the value.
 pub(super) fn sets(ui: &mut Ui, view: &View, text: Text, may: bool) -> bool {
-    let text = RichText::new(view.words.say(text)).size(18.0);
-    ui.add_enabled(may, Button::new(text).min_size(SETS.into()))
+    ui.add_enabled(may, button(view.words.say(text).to_owned()))
         .clicked()
+}
+
+/// A button that does something with the value.
+pub(super) fn button(text: String) -> Button<'static> {
+    Button::new(RichText::new(text).size(18.0)).min_size(SETS.into())
 }

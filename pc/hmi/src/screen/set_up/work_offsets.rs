@@ -1,13 +1,14 @@
 //! The work offsets: origins of coordinate systems, as values or by where the tip stands.
 
 use super::pad;
+use super::sightings::Sightings;
 use crate::screen::View;
 use crate::station::{Action, Station};
 use crate::texts::Text;
 use config::sentence;
 use config::work_offsets::{MOST, System, WorkOffset, WorkOffsets};
 use eframe::egui::{Button, Color32, Grid, Id, Label, Modal, RichText, Ui, vec2};
-use shared::io::{AXES, AXIS_NAMES};
+use shared::io::{AXES, AXIS_NAMES, SIDES};
 
 /// Width of the dialog \[points\].
 const WIDTH: f32 = 900.0;
@@ -15,6 +16,8 @@ const WIDTH: f32 = 900.0;
 const SYSTEM: [f32; 2] = [90.0, 44.0];
 /// Size of a value \[points\].
 const ROW: [f32; 2] = [170.0, 44.0];
+/// Size of what is told of a seam \[points\].
+const SEAM: [f32; 2] = [340.0, 52.0];
 /// Index of the rotation among what is chosen: after the axes.
 const ROTATION: usize = AXES;
 
@@ -27,6 +30,7 @@ pub(super) struct Dialog {
     chosen: usize,
     typed: String,
     failed: Option<String>,
+    sightings: Sightings,
 }
 
 /// What was asked for.
@@ -51,6 +55,7 @@ impl Dialog {
             chosen: 0,
             typed: String::new(),
             failed: None,
+            sightings: Sightings::default(),
         })
     }
 
@@ -69,9 +74,13 @@ impl Dialog {
             ui.horizontal(|ui| self.systems(ui));
             ui.add_space(8.0);
             let tip = tip(station);
+            self.sightings.take(station);
             ui.horizontal_top(|ui| {
                 ui.allocate_ui(vec2(WIDTH - pad::WIDTH - 24.0, 0.0), |ui| {
-                    ui.vertical(|ui| self.values(ui, view, station, tip.as_ref()));
+                    ui.vertical(|ui| {
+                        self.values(ui, view, station, tip.as_ref());
+                        self.by_camera(ui, view, station, tip.as_ref());
+                    });
                 });
                 ui.add_space(40.0);
                 ui.vertical(|ui| self.pad(ui, view, tip.as_ref()));
@@ -149,6 +158,41 @@ impl Dialog {
         if tip.is_none() {
             let text = RichText::new(words.say(Text::NotHomed)).color(view.theme.faint);
             ui.add(Label::new(text).wrap());
+        }
+    }
+
+    /// Where the cameras see their seams in the system that is chosen, to be set for what is chosen.
+    fn by_camera(&mut self, ui: &mut Ui, view: &View, station: &Station, tip: Option<&[f64; AXES]>) {
+        let Some(tip) = tip else { return };
+        let words = view.words;
+        ui.add_space(8.0);
+        let offset = self.edited.of(self.system);
+        let typed = number(&self.typed);
+        for side in (0..SIDES).filter(|side| station.live.pictures[*side].is_some()) {
+            let seam = self.sightings.of(side, tip);
+            let number = (side + 1).to_string();
+            let at = seam.map_or_else(
+                || words.say(Text::NoSeamInPicture).to_owned(),
+                |seam| {
+                    let [x, y, z, ..] = offset.coordinates(&seam).map(|at| (at * 1e3).round() / 1e3 + 0.0);
+                    format!("X {x:.3}  Y {y:.3}  Z {z:.3} mm")
+                },
+            );
+            let name = words.with(Text::SeamIn, &[&number, self.system.name()]);
+            ui.horizontal(|ui| {
+                ui.allocate_ui(SEAM.into(), |ui| {
+                    ui.vertical(|ui| {
+                        ui.set_min_size(SEAM.into());
+                        ui.label(RichText::new(name).size(13.0).color(view.theme.faint));
+                        ui.label(RichText::new(at).monospace().size(16.0));
+                    });
+                });
+                let may = typed.is_some() && self.chosen < 3;
+                let set = pad::button(words.with(Text::SeamIs, &[&number]));
+                if let (true, Some(seam)) = (ui.add_enabled(may && seam.is_some(), set).clicked(), seam) {
+                    self.set(typed, |offset, axis, typed| offset.touch_off(axis, &seam, typed));
+                }
+            });
         }
     }
 

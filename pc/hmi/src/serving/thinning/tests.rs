@@ -125,6 +125,7 @@ impl Weld {
                 quality: 1.0,
                 edges: [[[0.0; 2]; 2]; 2],
             }),
+            measurement: None,
             focus: Focus::default(),
         }
     }
