@@ -3,18 +3,20 @@
 mod by_hand;
 mod commission;
 mod lesson;
+mod spot;
 
 use crate::loaded::Loaded;
 use crate::seen::Ended;
 use crate::serving::stage::Stage;
 use anyhow::Context;
 use cam::path::Planner;
+use camera::calibrate::spot::SpotResult;
 use config::machine::MachineFile;
 use host_link::boards::Boards;
 use host_link::events::{Interest, Subscription};
 use host_link::spool::Spooling;
 use host_link::{Command, CommandError, Control, Remote, control};
-use job::{CircularTest, ImageCameras, Job, Names, PlannedCircle, SeenCircle, TaughtSeam, Work};
+use job::{CircularTest, ImageCameras, Job, Marking, Names, PlannedCircle, SeenCircle, TaughtSeam, Work};
 use plant_file::PlantChoice;
 use report::{LogColumns, LogWriter, Report};
 use std::path::{Path, PathBuf};
@@ -58,6 +60,15 @@ pub enum Task {
         machine: Arc<Machine>,
         /// The circle.
         circle: Box<PlannedCircle>,
+    },
+    /// Marks are burnt, and a camera looks back at them.
+    Spot {
+        /// The machine.
+        machine: Arc<Machine>,
+        /// The program at the beginning of whose weld the plate lies.
+        loaded: Arc<Loaded>,
+        /// The marks.
+        marking: Marking,
     },
     /// The cameras are taught seams.
     Lesson(Arc<Lesson>),
@@ -121,6 +132,8 @@ pub struct Outcome {
     pub folder: Option<PathBuf>,
     /// How it went round, if it was to.
     pub circle: Option<(CircularTest, SeenCircle)>,
+    /// Where a camera was found to look, and its side, if that was looked for.
+    pub spot: Option<(usize, SpotResult)>,
     /// How a lesson ended, if it was one.
     pub taught: Option<TaughtSeam>,
 }
@@ -159,6 +172,11 @@ impl Running {
                 commission::measure(&machine, &motors, &place, &own, control)
             }
             Task::Circle { machine, circle } => commission::circle(&machine, &circle, &place, &own, control),
+            Task::Spot {
+                machine,
+                loaded,
+                marking,
+            } => spot::find(&machine, &loaded, marking, &place, &own, control),
             Task::Lesson(lesson) => lesson::teach(&lesson, &place, &own, control),
         });
         Self {

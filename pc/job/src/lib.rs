@@ -37,7 +37,7 @@ pub use exciting::ExcitationRun;
 pub use images::{ImageCameras, Images, ImagesError, Sighting, SightingLog, WorkerError};
 pub use joint::SeenSeam;
 pub use leading::LedLesson;
-pub use marking::{MarkRun, SeenMarks};
+pub use marking::{MarkRun, Marking, SeenMarks};
 pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
 pub use seam_lesson::{LessonOptions, SeamLesson, TaughtSeam};
 pub use stopped::stopped;

@@ -16,7 +16,8 @@ use shared::geometry::Pose;
 use shared::io::{AXES, SIDES};
 use shared::tracking::frames::{Heads, SpotFrame};
 use shared::trajectory::SpeedLimits;
-use shared::units::DEG_PER_RAD;
+use shared::units::{DEG_PER_RAD, MM_S_PER_M_MIN};
+use std::ops::RangeInclusive;
 use std::time::Duration;
 use vision::calibrate::{BurntMark, MarkSighting};
 
@@ -40,10 +41,8 @@ const UNDER_WAY: f64 = 0.1;
 const LIMIT: Duration = Duration::from_secs(10);
 
 /// Which marks to burn, and how to look at them.
-#[derive(Debug)]
-pub struct MarkRun<'a> {
-    /// Program at the beginning of whose weld the plate lies.
-    pub program: &'a Program,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Marking {
     /// Side of the camera, 0 or 1.
     pub side: usize,
     /// Power of the beams \[W\].
@@ -54,6 +53,37 @@ pub struct MarkRun<'a> {
     pub length_mm: f64,
     /// Speed of the faster passes \[mm/s\].
     pub pass_speed_mm_s: f64,
+}
+
+impl Marking {
+    /// Lengths that a mark may have \[mm\]: the fit needs 8 mm of it well within its ends; and the path of both marks is in the memory
+    /// of the tracker, and the plate has to be level over it.
+    pub const LENGTHS_MM: RangeInclusive<f64> = 10.0..=100.0;
+
+    /// Dark lines on a thin plate, for the camera of `side`.
+    pub const fn of(side: usize) -> Self {
+        Self {
+            side,
+            power_w: 500.0,
+            mark_speed_mm_s: MM_S_PER_M_MIN,
+            length_mm: 25.0,
+            pass_speed_mm_s: 6.0 * MM_S_PER_M_MIN,
+        }
+    }
+
+    /// How long the plate has to be \[mm\].
+    pub fn plate_mm(&self) -> f64 {
+        2.0 * self.length_mm + 30.0
+    }
+}
+
+/// Marks to burn, and to look back at.
+#[derive(Debug)]
+pub struct MarkRun<'a> {
+    /// Program at the beginning of whose weld the plate lies.
+    pub program: &'a Program,
+    /// The marks.
+    pub marking: Marking,
     /// Where what the pictures show is noted.
     pub noted: SightingLog,
 }
@@ -91,7 +121,7 @@ impl Weld {
                 "the machine has one head, and marks are burnt with two".to_owned(),
             ));
         }
-        let spots = [run.side, 1 - run.side].map(|side| (heads.spot(&pose, side), side));
+        let spots = [run.marking.side, 1 - run.marking.side].map(|side| (heads.spot(&pose, side), side));
         let [own, other] = spots.map(|(spot, side)| spot.point(0.0, 0.0, point.v_follow()[side]));
         let place = Place {
             heads,
@@ -117,8 +147,8 @@ impl Weld {
         let mut marks = Vec::new();
         for (k, (_, side)) in spots.into_iter().enumerate() {
             let aside = if k == 0 { Vector3::zeros() } else { own - other };
-            let from = k as f64 * (run.length_mm + APART_MM);
-            let text = place.mark_text(run, side, aside, [from, run_up_mm(run.mark_speed_mm_s)]);
+            let from = k as f64 * (run.marking.length_mm + APART_MM);
+            let text = place.mark_text(run, side, aside, [from, run_up_mm(run.marking.mark_speed_mm_s)]);
             let ends = self.burn(session, run, &place, side, &text, phase(k as u32))?;
             // The beam of that head, in the frame of this one.
             let beam = heads.spot(&place.pose, side).v;
@@ -129,10 +159,10 @@ impl Weld {
         }
 
         let seen_from = -lead_mm;
-        let seen_to = 2.0 * run.length_mm + APART_MM - lead_mm;
+        let seen_to = 2.0 * run.marking.length_mm + APART_MM - lead_mm;
         let mut sightings = Vec::new();
         for (k, share) in SPEEDS.into_iter().enumerate() {
-            let speed = run.pass_speed_mm_s * share;
+            let speed = run.marking.pass_speed_mm_s * share;
             let run_up = run_up_mm(speed);
             let reach = [seen_from - run_up, seen_to + run_up];
             for (back, [from, to]) in [reach, [reach[1], reach[0]]].into_iter().enumerate() {
@@ -208,8 +238,8 @@ impl Weld {
             _ => Err(JobError::Calibrate(format!(
                 "beam {} did not go on and off where mark {} should be ({} W): look at its source and its permits",
                 side + 1,
-                usize::from(side != run.side) + 1,
-                run.power_w
+                usize::from(side != run.marking.side) + 1,
+                run.marking.power_w
             ))),
         }
     }
@@ -238,11 +268,14 @@ impl Weld {
         let at = |session: &Session, time_us: u64, slides: [f64; 2]| {
             let axes = session.record.axes_at(time_us)?;
             let pose = session.machine.pose(&MachinePosition::Axes(axes));
-            Some(place.head(&pose, run.side, slides))
+            Some(place.head(&pose, run.marking.side, slides))
         };
         let seen = noted.iter().filter_map(|sighting| {
             let strobe = strobed.get(&sighting.capture)?;
-            let slides = [strobe.slides_mm[2 * run.side], strobe.slides_mm[2 * run.side + 1]];
+            let slides = [
+                strobe.slides_mm[2 * run.marking.side],
+                strobe.slides_mm[2 * run.marking.side + 1],
+            ];
             let [before, here, after] = [
                 strobe.time_us.saturating_sub(SPEED_US),
                 strobe.time_us,
@@ -290,14 +323,14 @@ impl Place {
 
     /// A program that burns the mark of a beam, after a run-up.
     fn mark_text(&self, run: &MarkRun, side: usize, aside: Vector3<f64>, [from, run_up]: [f64; 2]) -> String {
-        let to = from + run.length_mm;
+        let to = from + run.marking.length_mm;
         let words = [from - run_up, from, to, to + run_up].map(|along| self.words(along, aside));
         let [start, on, off, end] = words;
-        let feed = run.mark_speed_mm_s * 60.0;
+        let feed = run.marking.mark_speed_mm_s * 60.0;
         format!(
             "G21 G90 G94 G64 G43.4\nM67 E{side} Q{power}\nG0 {start}\nF{feed}\nG1 {on}\nM62 P{side}\nG1 {off}\n\
              M63 P{side}\nG1 {end}\nM2\n",
-            power = run.power_w
+            power = run.marking.power_w
         )
     }
 

@@ -86,7 +86,7 @@ pub enum SeamError {
 
 impl Deviation {
     /// No deviation, over `length` \[mm\].
-    pub(crate) fn none(length: f64) -> Self {
+    pub fn none(length: f64) -> Self {
         Self {
             s: vec![0.0, length],
             value: vec![[0.0; SLIDES]; 2],

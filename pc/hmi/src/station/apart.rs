@@ -76,6 +76,17 @@ impl Station {
                 journal.message(now, &told);
             }
             Ok(Outcome {
+                spot: Some((side, found)),
+                ..
+            }) => {
+                let [u, v] = found.moved_mm.map(|mm| 1e3 * mm);
+                let told = format!(
+                    "camera {}: the spot has moved by {u:+.1} µm in U and {v:+.1} µm in V since the calibration before",
+                    side + 1
+                );
+                journal.message(now, &told);
+            }
+            Ok(Outcome {
                 taught: Some(taught), ..
             }) => {
                 for told in taught.told().unwrap_or_default() {

@@ -2,10 +2,14 @@
 
 use super::{Action, Station};
 use crate::commissioning::Commissioning;
-use crate::parameters::Parameters;
+use crate::edited::Edited;
+use crate::parameters::{Parameters, Written};
 use crate::running::{Machine, Outcome, Task};
-use anyhow::bail;
-use job::CircularTest;
+use anyhow::{Context, bail};
+use config::calibration::Calibration;
+use config::machine::MachineFile;
+use job::{CircularTest, Marking};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -49,6 +53,60 @@ impl Station {
             machine,
             circle: Box::new(circle),
         });
+        Ok(())
+    }
+
+    /// Burns marks before the beginning of the weld of the program that is loaded, and has a camera look back at them, if it may.
+    ///
+    /// # Errors
+    /// A sentence: the level that it needs, what is wrong with the machine file, or that there is no program.
+    pub fn find_spot(&mut self, marking: Marking, now: Duration) -> anyhow::Result<()> {
+        let machine = self.to_be_commissioned(now)?;
+        let loaded = self.loaded.clone();
+        self.commission(Task::Spot {
+            machine,
+            loaded: loaded
+                .context("no program is loaded at the beginning of whose weld the plate would lie")?,
+            marking,
+        });
+        Ok(())
+    }
+
+    /// The file with the calibration of camera `side`, and whether the machine file names it.
+    ///
+    /// # Errors
+    /// A sentence: what is wrong with the machine file, or that there are no cameras.
+    pub fn calibration_file(&self, side: usize) -> anyhow::Result<(PathBuf, bool)> {
+        let machine = MachineFile::read(&self.machine_file)?;
+        let unit = machine.tracking.context("the machine has no cameras")?;
+        let named = unit.cameras.calibration.map(|files| files[side].clone());
+        let is_named = named.is_some();
+        let name = named.unwrap_or_else(|| format!("camera-{}.toml", side + 1).into());
+        Ok((self.machine_file.with_file_name(name), is_named))
+    }
+
+    /// Writes the calibration of camera `side`, keeps what was there before as a version, and reads the program anew.
+    ///
+    /// # Errors
+    /// A sentence: why it is not written.
+    pub fn write_calibration(
+        &mut self,
+        side: usize,
+        found: &Calibration,
+        now: Duration,
+    ) -> anyhow::Result<()> {
+        self.check(Action::Write)?;
+        if !self.may(Action::Write, now) {
+            bail!("a calibration is only written where no job runs");
+        }
+        let (file, _) = self.calibration_file(side)?;
+        let mut text = Edited::open_or_new("calibration", &file)?;
+        text.set(found.to_toml());
+        let written = Written {
+            changes: Vec::new(),
+            version: text.write()?,
+        };
+        self.told_written(now, &file, &written);
         Ok(())
     }
 

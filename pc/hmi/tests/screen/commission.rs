@@ -1,6 +1,8 @@
 //! Commissioning at the screen: motors are measured, looked at, written; a circle is made.
 
-use crate::bench::Bench;
+use crate::bench::{Bench, PROGRAM};
+use config::calibration::Calibration;
+use config::machine::MachineFile;
 use eframe::egui::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use hmi::access::Level;
@@ -291,4 +293,64 @@ fn a_circle_is_asked_for_made_and_judged() {
     assert!(entries.any(|entry| {
         matches!(&entry.what, What::Said(text) if text.contains("circle of 50 mm in XY") && text.contains("G(b)"))
     }));
+}
+
+#[test]
+fn the_spot_of_a_camera_is_found_by_marks_and_its_calibration_written_after_two_questions() {
+    let (mut bench, file) = bench("draw:usual:401");
+    bench.tap("Camera to spot");
+    assert!(bench.says("No spot was found yet") && bench.says("No program is loaded."));
+    assert!(is_greyed(&bench, "Burn marks…"));
+    bench.load(PROGRAM);
+    bench.type_in("Length of a mark [mm]", "9");
+    assert!(bench.says("from 10 to 100 mm") && is_greyed(&bench, "Burn marks…"));
+    bench.type_in("Length of a mark [mm]", "25");
+    bench.tap("Camera 2");
+    bench.tap("Burn marks…");
+    assert!(bench.says("BOTH BEAMS BURN with 500 W: two marks of 25 mm") && bench.says("80 mm long"));
+    bench.pictures("commission-burn", |_| {});
+    assert!(!bench.station().is_running());
+    bench.tap("Burn now");
+    is_over(&mut bench);
+    bench.pictures("commission-spot", |_| {});
+    let calibration = file.with_file_name("camera-2.toml");
+    assert!(!calibration.exists() && bench.says("The machine file names no calibrations yet."));
+    bench.tap("Write calibration…");
+    bench.tap("Cancel");
+    assert!(!calibration.exists());
+    bench.tap("Write calibration…");
+    assert!(bench.says("The calibration of camera 2") && !bench.says("is kept as"));
+    bench.tap("Write now");
+    bench.until("the program is planned anew", |station| {
+        station.loaded().is_some()
+    });
+    // Where the plant has its camera: mounted beside the spot, with a lead of its own.
+    let written = Calibration::read(&calibration).expect("a calibration");
+    let machine = MachineFile::read(&file).expect("a machine");
+    let plant = bench.station().place.plant.of(machine.motion.kinematics.name());
+    let mount = plant.expect("a plant").cameras[1];
+    let found = written.spot.expect("a spot");
+    let off = [0, 1].map(|i| written.slides.offset_mm[i] - mount.beside_spot_mm[i]);
+    assert!(off.iter().all(|off| off.abs() < 0.006), "{off:?}");
+    let lead_mm = machine.tracking.expect("cameras").board.head.camera_lead_mm + mount.lead_error_mm;
+    assert!((found.lead_mm - lead_mm).abs() < 0.1, "{found:?}");
+    assert!((found.delay_s - mount.delay_s).abs() < 0.2e-3, "{found:?}");
+
+    // Another time what was written before is kept, and the same is not written twice.
+    bench.tap("Write calibration…");
+    bench.tap("Write now");
+    assert!(bench.says("nothing is changed"));
+    bench.type_in("Length of a mark [mm]", "20");
+    bench.tap("Burn marks…");
+    bench.tap("Burn now");
+    is_over(&mut bench);
+    bench.tap("Write calibration…");
+    assert!(bench.says("camera-2.toml.0001"));
+    bench.tap("Write now");
+    assert_eq!(
+        Calibration::read(&file.with_file_name("camera-2.toml.0001")).expect("the one before"),
+        written
+    );
+    bench.open(Page::Alarms);
+    assert!(bench.says("camera-2.toml made") && bench.says("camera 2: the spot has moved by"));
 }

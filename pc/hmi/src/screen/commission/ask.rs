@@ -2,11 +2,12 @@
 
 use super::circle::named;
 use super::words::unit;
-use super::{CommissionPage, Over, name_of, say};
+use super::{CommissionPage, Over, name_of, say, spot};
 use crate::screen::{View, writing};
 use crate::station::{Action, Station};
 use crate::texts::Text;
 use commission::excitations;
+use config::kept;
 use config::machine::MachineFile;
 use config::sentence;
 use eframe::egui::{Button, Color32, Id, Label, Modal, RichText, ScrollArea, Ui};
@@ -99,6 +100,60 @@ impl CommissionPage {
         if answer != Answer::None || !may {
             self.over = Over::Nothing;
         }
+    }
+
+    /// The question before marks are burnt: what burns, and where.
+    pub(super) fn ask_to_burn(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
+        let words = view.words;
+        let (Some(marking), Some(loaded)) = (self.spot.marking(), station.loaded().cloned()) else {
+            self.over = Over::Nothing;
+            return;
+        };
+        let camera = (marking.side + 1).to_string();
+        let title = words.with(Text::BurnTitle, &[&camera]);
+        let colour = view.theme.bad;
+        let answer = ask(ui, view, "burn", &title, Text::BurnNow, colour, |ui| {
+            ui.label(station.place.boards.name());
+            let [power, length, plate] =
+                [marking.power_w, marking.length_mm, marking.plate_mm()].map(|value| value.to_string());
+            let program = writing::name(&loaded.program_file);
+            let warning = words.with(Text::BurnWarning, &[&power, &length, &program, &plate]);
+            say(ui, warning, view.theme.doubt);
+        });
+        let may = station.may(Action::Commission, view.now);
+        if answer == Answer::Yes {
+            let begun = station.find_spot(marking, view.now);
+            self.spot
+                .refused(begun.err().map(|error| sentence(error.as_ref())));
+        }
+        if answer != Answer::None || !may {
+            self.over = Over::Nothing;
+        }
+    }
+
+    /// The question before a calibration is written.
+    pub(super) fn ask_to_calibrate(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
+        let found = spot::found(station).map(|(side, found)| (side, found.found.calibration));
+        let (Some((side, found)), true) = (found, station.may(Action::Write, view.now)) else {
+            self.over = Over::Nothing;
+            return;
+        };
+        let asked = station.calibration_file(side).map(|(file, _)| {
+            let version = file.exists().then(|| kept::next_version(&file));
+            let camera = (side + 1).to_string();
+            writing::ask(ui, view, &file, version.as_deref(), |ui| {
+                ui.label(view.words.with(Text::WriteCalibration, &[&camera]));
+            })
+        });
+        let written = match asked {
+            Ok(writing::Answer::Nothing) => return,
+            Ok(writing::Answer::Cancel) => Ok(()),
+            Ok(writing::Answer::Write) => station.write_calibration(side, &found, view.now),
+            Err(error) => Err(error),
+        };
+        self.spot
+            .refused(written.err().map(|error| sentence(error.as_ref())));
+        self.over = Over::Nothing;
     }
 
     /// The question before what was found is written: of which motors, and what that changes.

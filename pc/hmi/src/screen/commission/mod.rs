@@ -1,10 +1,12 @@
-//! The page for commissioning: motors are measured, what is found of them is looked at and written, and a circle is made.
+//! The page for commissioning: motors are measured, what is found of them is looked at and written, a circle is made, and the spot
+//! of a camera is found.
 
 mod ask;
 mod circle;
 mod curves;
 mod motor;
 mod motors;
+mod spot;
 mod words;
 
 use super::{View, bare, scroll};
@@ -15,6 +17,7 @@ use crate::texts::Text;
 use config::sentence;
 use eframe::egui::{self, Button, Label, RichText, Ui};
 use shared::io::MOTORS;
+use spot::Asked;
 use std::path::Path;
 use std::thread::JoinHandle;
 
@@ -33,6 +36,7 @@ pub(super) struct CommissionPage {
     ticked: [bool; MOTORS],
     shown: Shown,
     circle: circle::Entry,
+    spot: spot::Entry,
     over: Over,
     failed: Option<String>,
 }
@@ -45,6 +49,7 @@ enum Shown {
     /// The motor with this index.
     Motor(usize),
     Circle,
+    Spot,
 }
 
 /// What is open over the page.
@@ -58,6 +63,10 @@ enum Over {
     Write(Box<Proposal>),
     /// The question before a circle.
     Circle,
+    /// The question before marks are burnt.
+    Spot,
+    /// The question before a calibration is written.
+    Calibration,
 }
 
 /// What could be written.
@@ -96,6 +105,8 @@ impl CommissionPage {
             Over::Measure => self.ask_to_measure(ui, view, station),
             Over::Write(_) => self.ask_to_write(ui, view, station),
             Over::Circle => self.ask_to_go_round(ui, view, station),
+            Over::Spot => self.ask_to_burn(ui, view, station),
+            Over::Calibration => self.ask_to_calibrate(ui, view, station),
         }
     }
 
@@ -112,6 +123,11 @@ impl CommissionPage {
                     self.over = Over::Circle;
                 }
             }
+            Shown::Spot => match self.spot.show(ui, view, station) {
+                Asked::Nothing => {}
+                Asked::Burn => self.over = Over::Spot,
+                Asked::Write => self.over = Over::Calibration,
+            },
         }
     }
 

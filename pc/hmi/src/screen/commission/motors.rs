@@ -30,13 +30,14 @@ impl CommissionPage {
                 ui.horizontal(|ui| row(ui, view, motor, ticked, shown));
             }
         }
-        let text = RichText::new(view.words.say(Text::CircularTest));
-        let circle = Button::selectable(self.shown == Shown::Circle, text);
-        if ui
-            .add(circle.min_size([TICK + STATE + 8.0, ROW].into()))
-            .clicked()
-        {
-            self.shown = Shown::Circle;
+        for (shown, text) in [
+            (Shown::Circle, Text::CircularTest),
+            (Shown::Spot, Text::CameraToSpot),
+        ] {
+            let entry = Button::selectable(self.shown == shown, RichText::new(view.words.say(text)));
+            if ui.add(entry.min_size([TICK + STATE + 8.0, ROW].into())).clicked() {
+                self.shown = shown;
+            }
         }
         ui.add_space(4.0);
         let is_free = station.may(Action::Commission, view.now);

@@ -4,8 +4,8 @@ use clap::Args;
 use std::path::PathBuf;
 use world::{Deviation, PictureChoice};
 
-/// Seams of a simulated coupon: straight, and where they are drawn.
-const STRAIGHT: &str = "s_mm,u1_mm,v1_mm,u2_mm,v2_mm\n0,0,0,0,0\n100000,0,0,0,0\n";
+/// Length of a simulated coupon: more than any machine goes along \[mm\].
+const LENGTH_MM: f64 = 100_000.0;
 
 /// A coupon before rendered cameras.
 #[derive(Debug, Args)]
@@ -26,7 +26,7 @@ impl Coupon {
     pub fn deviation(&self, source: &PictureChoice) -> anyhow::Result<Option<Deviation>> {
         Ok(match (&self.seam, source) {
             (Some(file), _) => Some(Deviation::read(file)?),
-            (None, PictureChoice::Rendered(_)) => Some(Deviation::parse("coupon", STRAIGHT)?),
+            (None, PictureChoice::Rendered(_)) => Some(Deviation::none(LENGTH_MM)),
             (None, PictureChoice::Real(_)) => None,
         })
     }

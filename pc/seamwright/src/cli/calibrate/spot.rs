@@ -12,7 +12,7 @@ use camera::calibrate::spot::SpotResult;
 use clap::Args;
 use config::calibration::Calibration;
 use config::machine::{JointForm, MachineFile};
-use job::{ImageCameras, MarkRun, SightingLog, Work};
+use job::{ImageCameras, MarkRun, Marking, SightingLog, Work};
 use shared::units::MM_S_PER_M_MIN;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -61,11 +61,6 @@ pub struct Spot {
     coupon: Coupon,
 }
 
-/// Shortest mark \[mm\]: the fit needs 8 mm of it well within its ends.
-const SHORTEST_MM: f64 = 10.0;
-/// Longest one: the path of both is in the memory of the tracker, and the plate has to be level over it.
-const LONGEST_MM: f64 = 100.0;
-
 fn above_0(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok();
     let value = value.filter(|value| value.is_finite() && *value > 0.0);
@@ -74,9 +69,10 @@ fn above_0(text: &str) -> Result<f64, String> {
 
 fn long_enough(text: &str) -> Result<f64, String> {
     let value = above_0(text)?;
-    let good = (SHORTEST_MM..=LONGEST_MM).contains(&value);
+    let lengths = Marking::LENGTHS_MM;
+    let good = lengths.contains(&value);
     good.then_some(value)
-        .ok_or_else(|| format!("must be from {SHORTEST_MM} to {LONGEST_MM}"))
+        .ok_or_else(|| format!("must be from {} to {}", lengths.start(), lengths.end()))
 }
 
 impl Spot {
@@ -158,11 +154,7 @@ impl Spot {
         let noted = SightingLog::default();
         let run = MarkRun {
             program: &program,
-            side,
-            power_w: self.power,
-            mark_speed_mm_s: self.mark_speed * MM_S_PER_M_MIN,
-            length_mm: self.length,
-            pass_speed_mm_s: self.speed * MM_S_PER_M_MIN,
+            marking: self.marking(side),
             noted: noted.clone(),
         };
         let images = ImageCameras {
@@ -187,6 +179,16 @@ impl Spot {
         Ok(Ok(found))
     }
 
+    fn marking(&self, side: usize) -> Marking {
+        Marking {
+            side,
+            power_w: self.power,
+            mark_speed_mm_s: self.mark_speed * MM_S_PER_M_MIN,
+            length_mm: self.length,
+            pass_speed_mm_s: self.speed * MM_S_PER_M_MIN,
+        }
+    }
+
     /// Says what burns, and where.
     fn warn(&self, real: bool) -> anyhow::Result<()> {
         let what = format!(
@@ -195,7 +197,7 @@ impl Spot {
             self.power,
             self.length,
             self.at.display(),
-            2.0 * self.length + 30.0,
+            self.marking(0).plate_mm(),
         );
         if real && !self.burn {
             bail!("{what}; say so with --burn");
