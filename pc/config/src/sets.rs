@@ -11,6 +11,27 @@ const TOOLS: &str = "tools";
 /// What a tool has; 0 where it is left out \[mm\].
 pub const OF_TOOL: [&str; 2] = ["length_mm", "diameter_mm"];
 
+/// What weld data can have beside their power, and how it is put in: so that it does as little as can be. `P` is the power of the set.
+/// Names of levels are those of the machine, and how deep a pin goes is for nobody to guess: these are added in the file.
+const OF_WELD: [(&str, &str); 13] = [
+    ("beam", "1"),
+    ("outputs", "[]"),
+    ("pre_flow_s", "0.0"),
+    ("post_flow_s", "0.0"),
+    ("ignition", "{ power = P, time_s = 0.1 }"),
+    ("ramp_up", "{ power = P, over_mm = 0.0 }"),
+    ("ramp_down", "{ power = P, over_mm = 0.0 }"),
+    ("crater_fill", "{ power = P, time_s = 0.1 }"),
+    ("by_speed", "{ full_mm_s = 1.0, least = 1.0 }"),
+    (
+        "weave",
+        "{ form = \"sine\", amplitude_mm = 0.1, frequency_hz = 1.0, dwell_s = 0.0 }",
+    ),
+    ("offset_mm", "[0.0, 0.0]"),
+    ("tacks", "[{ from_mm = 0.0, to_mm = 1.0, power = P }]"),
+    ("changes", "[{ at_mm = 0.0, over_mm = 0.0, power = P }]"),
+];
+
 /// What the sets of a file are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sets {
@@ -105,6 +126,33 @@ impl Sets {
             parameter.kind = Kind::Float;
         }
         parameters::replace(text, &parameter, typed)
+    }
+
+    /// What can be put into `set` that it does not have.
+    pub fn missing(self, set: &Table) -> Vec<&'static str> {
+        let has = |key: &str| {
+            let within = |name: &str| name.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'));
+            set.parameters
+                .iter()
+                .any(|one| one.name == key || within(&one.name))
+        };
+        let of = match self {
+            Self::Tools => &[][..],
+            Self::WeldData => &OF_WELD,
+        };
+        of.iter().map(|(key, _)| *key).filter(|key| !has(key)).collect()
+    }
+
+    /// `text` with `key`, one of [`Sets::missing`], in `set`.
+    pub fn put_in(self, text: &str, set: &Table, key: &str) -> String {
+        let power = set.parameters.iter().find(|one| one.name == "power");
+        let power = power.map_or("0.0", |power| &*power.value);
+        let written = OF_WELD.iter().find(|(name, _)| *name == key);
+        let put_in = written.map(|(_, written)| {
+            let written = written.replace('P', power);
+            parameters::insert_written(text, &set.name, key, &written)
+        });
+        put_in.and_then(Result::ok).unwrap_or_else(|| text.to_owned())
     }
 
     /// `text` without the set called `name`.
@@ -308,6 +356,27 @@ mod tests {
         let first = with_weld_data("", "root", "");
         assert_eq!(first, "[root]\npower = 0.0\n");
         assert!(Sets::WeldData.check("w.toml", &first).is_ok());
+        // What is put in the reader takes, all of it at once too, and nothing is put in twice.
+        let mut text = "[a]\npower = 2500.0 # mine\n\n[b]\npower = 1.0\n".to_owned();
+        assert_eq!(
+            Sets::WeldData.missing(&called(Sets::WeldData, &text, "a")).len(),
+            OF_WELD.len()
+        );
+        for (key, _) in OF_WELD {
+            let set = called(Sets::WeldData, &text, "a");
+            text = Sets::WeldData.put_in(&text, &set, key);
+            Sets::WeldData
+                .check("w.toml", &text)
+                .unwrap_or_else(|error| panic!("{error}\n{text}"));
+            let missing = Sets::WeldData.missing(&called(Sets::WeldData, &text, "a"));
+            assert!(!missing.contains(&key), "{key}: {missing:?}\n{text}");
+        }
+        let full = called(Sets::WeldData, &text, "a");
+        assert_eq!(value(&full, "ramp_up.power"), ("2500.0", "W"));
+        assert!(
+            text.contains("# mine") && text.ends_with("[b]\npower = 1.0\n"),
+            "{text}"
+        );
         assert!(is_name("hot-root_2") && !is_name("") && !is_name("a b") && !is_name("a.b"));
     }
 }

@@ -169,6 +169,19 @@ impl EditedSets {
         self.take(with);
     }
 
+    /// What can be put into the set called `name`.
+    pub fn missing(&self, name: &str) -> Vec<&'static str> {
+        let set = called(&self.sets, name);
+        set.map_or_else(Vec::new, |set| self.kind.missing(set))
+    }
+
+    /// Puts `key`, one of [`EditedSets::missing`], into the set called `name`.
+    pub fn put_in(&mut self, name: &str, key: &str) {
+        if let Some(set) = called(&self.sets, name) {
+            self.take(self.kind.put_in(self.text.text(), set, key));
+        }
+    }
+
     /// Takes the set called `name` out.
     pub fn remove(&mut self, name: &str) {
         self.take(self.kind.without(self.text.text(), name));

@@ -1,6 +1,6 @@
 //! What a file does not have yet, and what it is to have no more.
 
-use toml_edit::{DocumentMut, Item, Table, TableLike, TomlError, value};
+use toml_edit::{DocumentMut, Item, Table, TableLike, TomlError, Value, value};
 
 /// `text` with `number` as the value called `key` of the table with these names, from outside inwards; tables that are not there
 /// are made. The rest of it stays to the letter.
@@ -23,6 +23,19 @@ pub fn insert(text: &str, tables: &[&str], key: &str, number: f64) -> Result<Str
         table = inner;
     }
     table.insert(key, value(number));
+    Ok(document.to_string())
+}
+
+/// `text` with `written`, a value as TOML has it, as what is called `key` in the table called `table`; the rest of it stays to the letter.
+///
+/// # Errors
+/// It is no TOML, or `written` is no value.
+pub fn insert_written(text: &str, table: &str, key: &str, written: &str) -> Result<String, TomlError> {
+    let mut document: DocumentMut = text.parse()?;
+    let written: Value = written.parse()?;
+    if let Some(table) = document.get_mut(table).and_then(Item::as_table_like_mut) {
+        table.insert(key, value(written));
+    }
     Ok(document.to_string())
 }
 

@@ -14,7 +14,7 @@ mod unit;
 
 pub use change::{Change, changes, differing, is_same};
 pub use edit::{EditError, replace};
-pub use insert::{copy, insert, remove};
+pub use insert::{copy, insert, insert_written, remove};
 pub use list::{Kind, Parameter, Table, list, list_elements};
 pub use range::{Range, is_about, ranges};
 pub use shipped::{shipped, shipped_values};

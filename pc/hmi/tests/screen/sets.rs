@@ -229,6 +229,12 @@ fn the_first_set_makes_the_file_and_what_somebody_else_has_made_meanwhile_is_not
         choose(bench, "power");
         keys(bench, "2500");
         bench.tap("Set to value");
+        bench.tap("+ ramp_up");
+        assert!(bench.harness.query_by_label("+ ramp_up").is_none());
+        choose(bench, "ramp_up.over_mm");
+        keys(bench, "6");
+        bench.tap("Set to value");
+        bench.pictures("first-weld-data", |_| {});
         bench.tap("Write…");
         assert!(bench.says("first-pass.power: left out → 2500.0") && !bench.says("is kept as"));
     };
@@ -241,7 +247,8 @@ fn the_first_set_makes_the_file_and_what_somebody_else_has_made_meanwhile_is_not
     std::fs::remove_file(&file).expect("removed");
     first(&mut bench);
     bench.tap("Write now");
-    assert_eq!(text(&file), "[first-pass]\npower = 2500.0\n");
+    let made = "[first-pass]\npower = 2500.0\nramp_up = { power = 2500.0, over_mm = 6.0 }\n";
+    assert_eq!(text(&file), made);
     assert!(!file.with_file_name("welddata.toml.0001").exists());
     bench.until("the program is planned anew", |station| {
         station.loaded().is_some()

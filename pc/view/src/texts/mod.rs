@@ -231,14 +231,15 @@ texts! {
     ToolDiameter: "Diameter", "直径", "Durchmesser";
     NoTools: "There are no tools: H and D in programs change nothing. For a first one, type its number and tap “New tool with this number”.", "没有刀具：程序中的 H 和 D 不起作用。要添加刀具，请输入其编号，然后点按“以此编号新建刀具”。", "Es gibt keine Werkzeuge: H und D in Programmen ändern nichts. Für das erste seine Nummer eingeben und „Neues Werkzeug mit dieser Nr.“ antippen.";
     NewTool: "New tool with this number", "以此编号新建刀具", "Neues Werkzeug mit dieser Nr.";
+    NotInSet: "Not in this set. A tap puts it in so that it does next to nothing until it is changed:", "该组中没有。点一下即加入，更改之前几乎不起作用：", "Nicht in diesem Satz. Getippt kommt es hinein, so dass es kaum etwas tut, bis es geändert wird:";
     NewWeldData: "New set with this name", "以此名称新建一组", "Neuer Satz mit diesem Namen";
     RemoveWeldData: "Take set out", "删除该组", "Satz herausnehmen";
     RemoveTool: "Take tool out", "删除刀具", "Werkzeug herausnehmen";
     ToolsWithDrivesOff: "Tools are changed while the drives are off.", "刀具数据须在驱动断开时更改。", "Werkzeuge werden bei ausgeschalteten Antrieben geändert.";
     WeldData: "Weld data…", "焊接数据…", "Schweißdaten…";
     WeldDataTitle: "Weld data", "焊接数据", "Schweißdaten";
-    WeldDataHint: "In {}, beside the program, which calls the sets by WELDON. A new set begins as a copy of the one that is chosen. What a set does not have yet is added in the file.", "在程序旁的 {} 中，程序用 WELDON 调用各组数据。新组先复制所选的组。组中尚没有的项目须在文件中添加。", "In {} neben dem Programm, das die Sätze mit WELDON aufruft. Ein neuer Satz beginnt als Kopie des gewählten. Was ein Satz noch nicht hat, wird in der Datei ergänzt.";
-    NoWeldData: "There are no sets yet. Type a name, root for example, and make the first: of no power, which WELDON=root calls. What else a set can have is added in the file; all keys are in docs/files.md, for example:", "尚无数据。请输入名称（例如 root），新建第一组：功率为零，程序用 WELDON=root 调用。组中其他项目在文件中添加；所有项目见 docs/files.md，例如：", "Es gibt noch keine Sätze. Tippen Sie einen Namen ein, zum Beispiel root, und legen Sie den ersten an: ohne Leistung, WELDON=root ruft ihn auf. Was ein Satz noch haben kann, wird in der Datei ergänzt; alle Schlüssel stehen in docs/files.md, zum Beispiel:";
+    WeldDataHint: "In {}, beside the program, which calls the sets by WELDON. A new set begins as a copy of the one that is chosen. Levels and pins are added in the file.", "在程序旁的 {} 中，程序用 WELDON 调用各组数据。新组先复制所选的组。模拟输出和搅拌针的数据在文件中添加。", "In {} neben dem Programm, das die Sätze mit WELDON aufruft. Ein neuer Satz beginnt als Kopie des gewählten. Pegel und Stifte werden in der Datei ergänzt.";
+    NoWeldData: "There are no sets yet. Type a name, root for example, and make the first: of no power, which WELDON=root calls. All keys are in docs/files.md; a set can be, for example:", "尚无数据。请输入名称（例如 root），新建第一组：功率为零，程序用 WELDON=root 调用。所有项目见 docs/files.md，例如：", "Es gibt noch keine Sätze. Tippen Sie einen Namen ein, zum Beispiel root, und legen Sie den ersten an: ohne Leistung, WELDON=root ruft ihn auf. Alle Schlüssel stehen in docs/files.md; ein Satz kann zum Beispiel so sein:";
     Sharpness: "Sharpness {}, best {}", "清晰度 {}，最佳 {}", "Schärfe {}, beste {}";
     Defocus: "Out of focus by {} mm, + is towards the camera", "离焦 {} mm，+ 为靠近摄像机", "Außer Fokus um {} mm, + ist zur Kamera hin";
     DefocusUnknown: "Sharp, but no seam to measure", "有清晰带，但没有可测的焊缝", "Scharf, aber keine Naht zu messen";

@@ -202,7 +202,8 @@ impl Dialog {
     fn values(&mut self, ui: &mut Ui, view: &View) {
         let Some(sets) = &self.sets else { return };
         let values = self.of_set();
-        let mut tapped = None;
+        let missing = sets.missing(&self.set);
+        let (mut tapped, mut put_in) = (None, None);
         ScrollArea::vertical()
             .id_salt("values")
             .max_height(HEIGHTS[1])
@@ -234,9 +235,26 @@ impl Dialog {
                             ui.end_row();
                         }
                     });
+                if missing.is_empty() {
+                    return;
+                }
+                ui.add_space(12.0);
+                let hint = RichText::new(view.words.say(Text::NotInSet)).color(view.theme.faint);
+                ui.add(Label::new(hint).wrap());
+                ui.horizontal_wrapped(|ui| {
+                    for key in missing {
+                        let text = RichText::new(format!("+ {key}")).size(17.0);
+                        if ui.add(Button::new(text).min_size(SET.into())).clicked() {
+                            put_in = Some(key);
+                        }
+                    }
+                });
             });
         if tapped.is_some() {
             self.choose(tapped.as_ref());
+        }
+        if let (Some(key), Some(sets)) = (put_in, &mut self.sets) {
+            sets.put_in(&self.set, key);
         }
     }
 
