@@ -16,7 +16,9 @@ use host_link::boards::Boards;
 use host_link::events::{Interest, Subscription};
 use host_link::spool::Spooling;
 use host_link::{Command, CommandError, Control, Remote, control};
-use job::{CircularTest, ImageCameras, Job, Marking, Names, PlannedCircle, SeenCircle, TaughtSeam, Work};
+use job::{
+    CircularTest, ImageCameras, Job, JobError, Marking, Names, PlannedCircle, SeenCircle, TaughtSeam, Work,
+};
 use plant_file::PlantChoice;
 use report::{LogColumns, LogWriter, Report};
 use std::path::{Path, PathBuf};
@@ -139,6 +141,14 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Of a job that nothing came of.
+    fn failed(error: &JobError) -> Self {
+        Self {
+            error: Some(error.to_string()),
+            ..Self::default()
+        }
+    }
+
     /// The same, as it is told.
     pub fn ended(&self) -> Ended {
         Ended {

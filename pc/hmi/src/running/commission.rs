@@ -59,10 +59,7 @@ pub(super) fn circle(
     let mut boards = connect(&machine.is, place, remote)?;
     let record = job::run(boards.as_mut(), &job, &mut control)?;
     if let Some(error) = &record.error {
-        return Ok(Outcome {
-            error: Some(error.to_string()),
-            ..Outcome::default()
-        });
+        return Ok(Outcome::failed(error));
     }
     let seen = circle.seen(&record.machine, &record.record)?;
     let folder = next_folder(&place.reports, Path::new("circular-test"))?;

@@ -60,10 +60,7 @@ pub(super) fn find(
     let mut boards = connect(&machine.is, place, remote)?;
     let record = job::run(boards.as_mut(), &job, &mut control)?;
     if let Some(error) = &record.error {
-        return Ok(Outcome {
-            error: Some(error.to_string()),
-            ..Outcome::default()
-        });
+        return Ok(Outcome::failed(error));
     }
     let seen = record.taught.marks.context("no marks were burnt")?;
     let found = spot::spot(&seen.marks, &seen.sightings, seen.lead_mm, &before);

@@ -2,7 +2,7 @@
 
 use super::circle::named;
 use super::words::unit;
-use super::{CommissionPage, Over, name_of, say, spot};
+use super::{CommissionPage, Over, say, spot};
 use crate::screen::{View, writing};
 use crate::station::{Action, Station};
 use crate::texts::Text;
@@ -164,7 +164,7 @@ impl CommissionPage {
         };
         let parameters = &proposal.parameters;
         let mut chosen = proposal.chosen;
-        let title = words.with(Text::WriteTitle, &[&name_of(parameters.file())]);
+        let title = words.with(Text::WriteTitle, &[&writing::name(parameters.file())]);
         let colour = view.theme.doubt;
         let answer = ask(ui, view, "write found", &title, Text::WriteNow, colour, |ui| {
             ui.horizontal_wrapped(|ui| {

@@ -18,7 +18,6 @@ use config::sentence;
 use eframe::egui::{self, Button, Label, RichText, Ui};
 use shared::io::MOTORS;
 use spot::Asked;
-use std::path::Path;
 use std::thread::JoinHandle;
 
 /// Width of the list \[points\].
@@ -156,14 +155,6 @@ impl CommissionPage {
         }
         self.opened = Some(opened);
     }
-}
-
-/// The name of a file without its folder.
-fn name_of(file: &Path) -> String {
-    file.file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
 }
 
 /// What is left of a page that ends at `bottom`, and at least so much \[points\].

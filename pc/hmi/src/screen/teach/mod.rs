@@ -3,13 +3,12 @@
 mod places;
 mod seams;
 
-use super::{View, access, bare, jog};
+use super::{View, access, bare, jog, writing};
 use crate::station::{Action, Station};
 use crate::teaching::Teaching;
 use crate::texts::Text;
 use config::sentence;
 use eframe::egui::{self, Button, Id, Label, Modal, RichText, ScrollArea, Ui};
-use std::path::Path;
 use view::screen::run::Textures;
 
 /// Width of part and points \[points\].
@@ -81,7 +80,7 @@ impl TeachPage {
             Some(Teaching::Places(places)) => places.part(),
             Some(Teaching::Seams(seams)) => seams.part(),
         };
-        ui.label(RichText::new(name_of(part)).size(18.0).strong());
+        ui.label(RichText::new(writing::name(part)).size(18.0).strong());
         if !station.allows(Action::Teach) {
             let text = RichText::new(access::needs(view, Action::Teach)).color(view.theme.doubt);
             ui.add(Label::new(text).wrap());
@@ -112,7 +111,7 @@ impl TeachPage {
             }
             ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
                 for part in parts {
-                    let name = name_of(&part);
+                    let name = writing::name(&part);
                     let choice = Button::new(RichText::new(name).size(18.0)).min_size([540.0, 48.0].into());
                     if ui.add(choice).clicked() {
                         match Teaching::open(&part) {
@@ -163,14 +162,6 @@ impl TeachPage {
             self.over = Over::Nothing;
         }
     }
-}
-
-/// What people call a file.
-fn name_of(file: &Path) -> String {
-    file.file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned()
 }
 
 fn button(ui: &mut Ui, view: &View, text: Text, enabled: bool) -> bool {

@@ -1,7 +1,7 @@
 //! Places to which the tip is led, and the panel to lead it by.
 
-use super::{Over, TeachPage, button, name_of, told};
-use crate::screen::{View, jog, title};
+use super::{Over, TeachPage, button, told};
+use crate::screen::{View, jog, title, writing};
 use crate::station::{Action, Station};
 use crate::teaching::Teaching;
 use crate::texts::Text;
@@ -47,7 +47,7 @@ impl TeachPage {
                 && let Some(machine) = station.by_hand()
             {
                 done = Some(station.teach(|| places.plan(machine)).map(|program| {
-                    let name = name_of(&program);
+                    let name = writing::name(&program);
                     station.load(program, None);
                     (Text::Planned, name)
                 }));
@@ -63,7 +63,9 @@ impl TeachPage {
         let Some(Teaching::Places(places)) = &self.teaching else {
             return;
         };
-        let heading = view.words.with(Text::PlacesIn, &[&name_of(places.places_file())]);
+        let heading = view
+            .words
+            .with(Text::PlacesIn, &[&writing::name(places.places_file())]);
         title(ui, view, &heading);
         ScrollArea::vertical().stick_to_bottom(true).show(ui, |ui| {
             for (number, point) in (1..).zip(places.points()) {

@@ -1,8 +1,8 @@
 //! Seams that the cameras are taught.
 
-use super::{Over, TeachPage, button, name_of, told};
+use super::{Over, TeachPage, button, told};
 use crate::running::{Machine, Outcome};
-use crate::screen::View;
+use crate::screen::{View, writing};
 use crate::station::{Action, Station};
 use crate::teaching::Teaching;
 use crate::texts::Text;
@@ -44,7 +44,7 @@ impl TeachPage {
             if button(ui, view, Text::PlanProgram, some) {
                 let planned = station.teach(|| seams.plan(&Machine::read(station.machine_file())?));
                 done = Some(planned.map(|program| {
-                    let name = name_of(&program);
+                    let name = writing::name(&program);
                     station.load(program, None);
                     (Text::Planned, name)
                 }));
@@ -57,7 +57,7 @@ impl TeachPage {
             Some(Phase::TeachingSeam { number }) if station.is_teaching() => number - 1,
             _ => seams.points(),
         };
-        let file = name_of(seams.points_file());
+        let file = writing::name(seams.points_file());
         let points = words.with(Text::PointsIn, &[&count.to_string(), &file]);
         ui.add(Label::new(points).wrap());
         if station.by_hand().is_some() {
@@ -80,7 +80,7 @@ impl TeachPage {
         };
         let modal = Modal::new(Id::unique("lesson")).show(ui.ctx(), |ui| {
             ui.set_width(560.0);
-            ui.heading(words.with(Text::TeachSeamsTitle, &[&name_of(seams.part())]));
+            ui.heading(words.with(Text::TeachSeamsTitle, &[&writing::name(seams.part())]));
             ui.label(station.place.boards.name());
             let warning = RichText::new(words.say(Text::TeachSeamsWarning)).color(view.theme.doubt);
             ui.add(Label::new(warning.size(15.0)).wrap());
