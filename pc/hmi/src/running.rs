@@ -10,7 +10,6 @@ use crate::seen::Ended;
 use crate::serving::stage::Stage;
 use anyhow::Context;
 use cam::path::Planner;
-use camera::calibrate::spot::SpotResult;
 use config::machine::MachineFile;
 use host_link::boards::Boards;
 use host_link::events::{Interest, Subscription};
@@ -114,6 +113,7 @@ pub struct Place {
 }
 
 pub use lesson::Lesson;
+pub use spot::FoundSpot;
 
 /// A job that runs.
 #[derive(Debug)]
@@ -134,8 +134,8 @@ pub struct Outcome {
     pub folder: Option<PathBuf>,
     /// How it went round, if it was to.
     pub circle: Option<(CircularTest, SeenCircle)>,
-    /// Where a camera was found to look, and its side, if that was looked for.
-    pub spot: Option<(usize, SpotResult)>,
+    /// Where a camera was found to look, if that was looked for.
+    pub spot: Option<FoundSpot>,
     /// How a lesson ended, if it was one.
     pub taught: Option<TaughtSeam>,
 }

@@ -70,7 +70,7 @@ pub enum Action {
     WeldData,
     /// Another machine file.
     Write,
-    /// Motors are measured, or a circle is made.
+    /// Motors are measured, a circle is made, or the spot of a camera is found.
     Commission,
     /// The cameras are taught seams.
     Lesson,

@@ -4,9 +4,10 @@
 //! machine goes aside by what is between both spots. Then the camera passes over both, beams off, at two speeds, there and back.
 //! The slides rest all the time. What is told of it is what the boards measured, never what is true of a simulated machine.
 
-use crate::images::SightingLog;
+use crate::images::{ImageCameras, SightingLog};
 use crate::session::Session;
 use crate::{Job, JobError, Weld};
+use config::calibration::Calibration;
 use host_link::events::Phase;
 use host_link::record::MachinePosition;
 use nalgebra::Vector3;
@@ -68,6 +69,19 @@ impl Marking {
             mark_speed_mm_s: MM_S_PER_M_MIN,
             length_mm: 25.0,
             pass_speed_mm_s: 6.0 * MM_S_PER_M_MIN,
+        }
+    }
+
+    /// Cameras that look back at the marks: as `calibrations` say, but for their spots, for lead and delay are found anew.
+    pub fn cameras(&self, mut calibrations: [Calibration; SIDES], noted: &SightingLog) -> ImageCameras {
+        for calibration in &mut calibrations {
+            calibration.spot = None;
+        }
+        ImageCameras {
+            calibrations,
+            kept: None,
+            noted: Some((self.side, noted.clone())),
+            shown_every: None,
         }
     }
 

@@ -84,9 +84,17 @@ pub enum SeamError {
     },
 }
 
+/// Farther than any machine goes \[mm\].
+const BEYOND_MM: f64 = 100_000.0;
+
 impl Deviation {
+    /// No deviation, as far as any machine goes.
+    pub fn straight() -> Self {
+        Self::none(BEYOND_MM)
+    }
+
     /// No deviation, over `length` \[mm\].
-    pub fn none(length: f64) -> Self {
+    pub(crate) fn none(length: f64) -> Self {
         Self {
             s: vec![0.0, length],
             value: vec![[0.0; SLIDES]; 2],

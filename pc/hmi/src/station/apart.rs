@@ -76,13 +76,12 @@ impl Station {
                 journal.message(now, &told);
             }
             Ok(Outcome {
-                spot: Some((side, found)),
-                ..
+                spot: Some(found), ..
             }) => {
-                let [u, v] = found.moved_mm.map(|mm| 1e3 * mm);
+                let [u, v] = found.result.moved_mm.map(|mm| 1e3 * mm);
                 let told = format!(
                     "camera {}: the spot has moved by {u:+.1} µm in U and {v:+.1} µm in V since the calibration before",
-                    side + 1
+                    found.side + 1
                 );
                 journal.message(now, &told);
             }

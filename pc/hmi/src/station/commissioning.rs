@@ -1,15 +1,13 @@
-//! Commissioning at the station: motors are measured, a circle is made, what was found is written.
+//! Commissioning at the station: motors are measured, a circle is made, the spot of a camera is found, and what was found is
+//! written.
 
 use super::{Action, Station};
 use crate::commissioning::Commissioning;
 use crate::edited::Edited;
 use crate::parameters::{Parameters, Written};
-use crate::running::{Machine, Outcome, Task};
-use anyhow::{Context, bail};
-use config::calibration::Calibration;
-use config::machine::MachineFile;
+use crate::running::{FoundSpot, Machine, Outcome, Task};
+use anyhow::{Context, bail, ensure};
 use job::{CircularTest, Marking};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -62,51 +60,39 @@ impl Station {
     /// A sentence: the level that it needs, what is wrong with the machine file, or that there is no program.
     pub fn find_spot(&mut self, marking: Marking, now: Duration) -> anyhow::Result<()> {
         let machine = self.to_be_commissioned(now)?;
-        let loaded = self.loaded.clone();
+        let loaded = self
+            .loaded
+            .clone()
+            .context("no program is loaded at the beginning of whose weld the plate would lie")?;
+        ensure!(
+            loaded.program.waits().next().is_none(),
+            "the program waits for the operator or an input, which this does not: load one that does not wait"
+        );
         self.commission(Task::Spot {
             machine,
-            loaded: loaded
-                .context("no program is loaded at the beginning of whose weld the plate would lie")?,
+            loaded,
             marking,
         });
         Ok(())
     }
 
-    /// The file with the calibration of camera `side`, and whether the machine file names it.
-    ///
-    /// # Errors
-    /// A sentence: what is wrong with the machine file, or that there are no cameras.
-    pub fn calibration_file(&self, side: usize) -> anyhow::Result<(PathBuf, bool)> {
-        let machine = MachineFile::read(&self.machine_file)?;
-        let unit = machine.tracking.context("the machine has no cameras")?;
-        let named = unit.cameras.calibration.map(|files| files[side].clone());
-        let is_named = named.is_some();
-        let name = named.unwrap_or_else(|| format!("camera-{}.toml", side + 1).into());
-        Ok((self.machine_file.with_file_name(name), is_named))
-    }
-
-    /// Writes the calibration of camera `side`, keeps what was there before as a version, and reads the program anew.
+    /// Writes the calibration of the camera whose spot was `found`, keeps what was there before as a version, and reads the program
+    /// anew.
     ///
     /// # Errors
     /// A sentence: why it is not written.
-    pub fn write_calibration(
-        &mut self,
-        side: usize,
-        found: &Calibration,
-        now: Duration,
-    ) -> anyhow::Result<()> {
+    pub fn write_calibration(&mut self, found: &FoundSpot, now: Duration) -> anyhow::Result<()> {
         self.check(Action::Write)?;
         if !self.may(Action::Write, now) {
             bail!("a calibration is only written where no job runs");
         }
-        let (file, _) = self.calibration_file(side)?;
-        let mut text = Edited::open_or_new("calibration", &file)?;
-        text.set(found.to_toml());
+        let mut text = Edited::open_or_new("calibration", &found.file)?;
+        text.set(found.result.found.calibration.to_toml());
         let written = Written {
             changes: Vec::new(),
             version: text.write()?,
         };
-        self.told_written(now, &file, &written);
+        self.told_written(now, &found.file, &written);
         Ok(())
     }
 

@@ -301,6 +301,14 @@ fn the_spot_of_a_camera_is_found_by_marks_and_its_calibration_written_after_two_
     bench.tap("Camera to spot");
     assert!(bench.says("No spot was found yet") && bench.says("No program is loaded."));
     assert!(is_greyed(&bench, "Burn marks…"));
+    // Marks wait for nobody, so neither may the program that says where the plate lies.
+    let waiting = bench.folder.path().join("waits.ngc");
+    let text = std::fs::read_to_string(PROGRAM).expect("a program");
+    std::fs::write(&waiting, text.replacen('\n', "\nM0\n", 1)).expect("written");
+    bench.load(waiting.to_str().expect("a name"));
+    bench.tap("Burn marks…");
+    bench.tap("Burn now");
+    assert!(bench.says("the program waits for the operator") && !bench.station().is_running());
     bench.load(PROGRAM);
     bench.type_in("Length of a mark [mm]", "9");
     assert!(bench.says("from 10 to 100 mm") && is_greyed(&bench, "Burn marks…"));

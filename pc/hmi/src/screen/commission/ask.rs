@@ -133,23 +133,20 @@ impl CommissionPage {
 
     /// The question before a calibration is written.
     pub(super) fn ask_to_calibrate(&mut self, ui: &mut Ui, view: &View, station: &mut Station) {
-        let found = spot::found(station).map(|(side, found)| (side, found.found.calibration));
-        let (Some((side, found)), true) = (found, station.may(Action::Write, view.now)) else {
+        let found = spot::found(station).cloned();
+        let (Some(found), true) = (found, station.may(Action::Write, view.now)) else {
             self.over = Over::Nothing;
             return;
         };
-        let asked = station.calibration_file(side).map(|(file, _)| {
-            let version = file.exists().then(|| kept::next_version(&file));
-            let camera = (side + 1).to_string();
-            writing::ask(ui, view, &file, version.as_deref(), |ui| {
-                ui.label(view.words.with(Text::WriteCalibration, &[&camera]));
-            })
+        let version = found.file.exists().then(|| kept::next_version(&found.file));
+        let answer = writing::ask(ui, view, &found.file, version.as_deref(), |ui| {
+            let camera = (found.side + 1).to_string();
+            ui.label(view.words.with(Text::WriteCalibration, &[&camera]));
         });
-        let written = match asked {
-            Ok(writing::Answer::Nothing) => return,
-            Ok(writing::Answer::Cancel) => Ok(()),
-            Ok(writing::Answer::Write) => station.write_calibration(side, &found, view.now),
-            Err(error) => Err(error),
+        let written = match answer {
+            writing::Answer::Nothing => return,
+            writing::Answer::Cancel => Ok(()),
+            writing::Answer::Write => station.write_calibration(&found, view.now),
         };
         self.spot
             .refused(written.err().map(|error| sentence(error.as_ref())));

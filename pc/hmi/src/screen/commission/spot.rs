@@ -1,11 +1,10 @@
 //! Where a camera looks beside its spot: what to burn, and what was found last.
 
 use super::{button, say};
-use crate::running::Outcome;
+use crate::running::FoundSpot;
 use crate::screen::{View, writing};
 use crate::station::{Action, Station};
 use crate::texts::Text;
-use camera::calibrate::spot::SpotResult;
 use eframe::egui::{Button, Grid, Label, RichText, TextEdit, Ui};
 use job::Marking;
 use shared::io::SIDES;
@@ -41,15 +40,10 @@ impl Default for Entry {
     }
 }
 
-/// Where a camera was found to look by the last job, and its side.
-pub(super) fn found(station: &Station) -> Option<(usize, &SpotResult)> {
-    match station.commissioned() {
-        Some(Ok(Outcome {
-            spot: Some((side, found)),
-            ..
-        })) => Some((*side, found)),
-        _ => None,
-    }
+/// Where a camera was found to look by the last job.
+pub(super) fn found(station: &Station) -> Option<&FoundSpot> {
+    let outcome = station.commissioned()?.as_ref().ok()?;
+    outcome.spot.as_ref()
 }
 
 impl Entry {
@@ -132,7 +126,7 @@ impl Entry {
         });
         ui.add_space(8.0);
         match found(station) {
-            Some((side, found)) => figures(ui, view, station, side, found),
+            Some(found) => figures(ui, view, found),
             None => say(ui, words.say(Text::NoSpotYet), view.theme.faint),
         }
         asked
@@ -140,26 +134,26 @@ impl Entry {
 }
 
 /// What was found.
-fn figures(ui: &mut Ui, view: &View, station: &Station, side: usize, found: &SpotResult) {
+fn figures(ui: &mut Ui, view: &View, found: &FoundSpot) {
     let words = view.words;
-    let camera = (side + 1).to_string();
+    let camera = (found.side + 1).to_string();
     ui.label(RichText::new(words.with(Text::Camera, &[&camera])).strong());
     Grid::new("found")
         .num_columns(3)
         .min_row_height(28.0)
         .spacing([16.0, 2.0])
         .show(ui, |ui| {
-            for figure in &found.found.figures {
+            for figure in &found.result.found.figures {
                 ui.label(figure.text);
                 ui.label(RichText::new(&figure.found).monospace());
                 ui.label(RichText::new(&figure.beside).color(view.theme.faint));
                 ui.end_row();
             }
         });
-    let [u, v] = found.moved_mm.map(|mm| format!("{:+.1}", UM * mm));
+    let [u, v] = found.result.moved_mm.map(|mm| format!("{:+.1}", UM * mm));
     say(ui, words.with(Text::SpotMoved, &[&u, &v]), view.theme.doubt);
-    if let Ok((file, false)) = station.calibration_file(side) {
-        let text = words.with(Text::CalibrationUnnamed, &[&writing::name(&file)]);
+    if !found.is_named {
+        let text = words.with(Text::CalibrationUnnamed, &[&writing::name(&found.file)]);
         ui.add(Label::new(RichText::new(text).size(14.0)).wrap());
     }
 }

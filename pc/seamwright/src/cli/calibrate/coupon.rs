@@ -4,9 +4,6 @@ use clap::Args;
 use std::path::PathBuf;
 use world::{Deviation, PictureChoice};
 
-/// Length of a simulated coupon: more than any machine goes along \[mm\].
-const LENGTH_MM: f64 = 100_000.0;
-
 /// A coupon before rendered cameras.
 #[derive(Debug, Args)]
 pub struct Coupon {
@@ -26,7 +23,7 @@ impl Coupon {
     pub fn deviation(&self, source: &PictureChoice) -> anyhow::Result<Option<Deviation>> {
         Ok(match (&self.seam, source) {
             (Some(file), _) => Some(Deviation::read(file)?),
-            (None, PictureChoice::Rendered(_)) => Some(Deviation::none(LENGTH_MM)),
+            (None, PictureChoice::Rendered(_)) => Some(Deviation::straight()),
             (None, PictureChoice::Real(_)) => None,
         })
     }

@@ -12,7 +12,7 @@ use camera::calibrate::spot::SpotResult;
 use clap::Args;
 use config::calibration::Calibration;
 use config::machine::{JointForm, MachineFile};
-use job::{ImageCameras, MarkRun, Marking, SightingLog, Work};
+use job::{MarkRun, Marking, SightingLog, Work};
 use shared::units::MM_S_PER_M_MIN;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -129,11 +129,7 @@ impl Spot {
             Some(_) => self.which.before()?,
             None => calibrations[side],
         };
-        // Lead and delay are found anew.
         calibrations[side] = before;
-        for calibration in &mut calibrations {
-            calibration.spot = None;
-        }
         self.warn(matches!(self.boards.choice, BoardChoice::At { .. }))?;
         let source = source(&self.boards.choice, cameras, self.coupon.scene.as_deref())?;
         if cameras.joint == JointForm::Corner {
@@ -151,18 +147,12 @@ impl Spot {
             coupon: &self.coupon,
         };
         let program = on_machine.program()?;
-        let noted = SightingLog::default();
         let run = MarkRun {
             program: &program,
             marking: self.marking(side),
-            noted: noted.clone(),
+            noted: SightingLog::default(),
         };
-        let images = ImageCameras {
-            calibrations,
-            kept: None,
-            noted: Some((side, noted)),
-            shown_every: None,
-        };
+        let images = run.marking.cameras(calibrations, &run.noted);
         let ended = match on_machine.run(Work::Mark(&run), images, source, Workpiece::BarePlate)? {
             Ok(ended) => ended,
             Err(code) => return Ok(Err(code)),
