@@ -10,6 +10,9 @@ use shared::io::{MOTORS, SLIDES};
 /// Most resonances of a motor's mechanics.
 pub const MODES: usize = 3;
 
+/// Most bodies that the axes touch.
+pub const BODIES: usize = 8;
+
 /// Most bytes of a [`PlantConfig`] in postcard, as an emulated board reads it.
 pub const LONGEST: usize = 4096;
 
@@ -20,8 +23,30 @@ pub struct PlantConfig {
     pub motors: [Option<MotorConfig>; MOTORS],
     /// In the order of [`shared::io::SLIDE_NAMES`].
     pub slides: [Option<SlideConfig>; SLIDES],
+    /// What the axes touch; without it every input of the process is on, as if the process always answered.
+    pub touch: Option<TouchConfig>,
     /// Start of all noise.
     pub seed: u32,
+}
+
+/// What the axes touch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TouchConfig {
+    /// Input of the process that is on while something is touched, 1 to 4.
+    pub input: u8,
+    /// What can be touched.
+    pub bodies: Vec<BodyConfig, BODIES>,
+}
+
+/// A box between two corners, in true positions of X, Y and Z \[mm\].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyConfig {
+    /// Its lower corner.
+    pub from: [f64; 3],
+    /// Its upper one.
+    pub to: [f64; 3],
 }
 
 /// One motor: its drive, what it moves, its grating.

@@ -14,10 +14,11 @@ mod motion;
 mod motor;
 mod noise;
 mod slides;
+mod touch;
 
 pub use config::{
-    DriveConfig, GratingConfig, LONGEST, MODES, MechanicsConfig, ModeConfig, MotorConfig, PlantConfig,
-    SlideConfig, Wave,
+    BODIES, BodyConfig, DriveConfig, GratingConfig, LONGEST, MODES, MechanicsConfig, ModeConfig, MotorConfig,
+    PlantConfig, SlideConfig, TouchConfig, Wave,
 };
 pub use drive::Drive;
 pub use grating::{Grating, GratingFault, Reading};

@@ -1,6 +1,6 @@
 //! What a motion board is wired to: the servo axes of a machine, and its beams.
 
-use crate::config::PlantConfig;
+use crate::config::{PlantConfig, TouchConfig};
 use crate::motor::RunningMotor;
 use shared::io::{
     Bits, Command, DacCode, Feedback, MOTOR_AXIS, MOTORS, MotionCommand, MotionFeedback, PROCESS_INPUTS,
@@ -20,6 +20,7 @@ pub struct MotionPlant {
     power: [f64; SIDES],
     /// Their power, regardless of commands.
     stuck: [Option<DacCode>; SIDES],
+    touch: Option<TouchConfig>,
 }
 
 impl MotionPlant {
@@ -34,6 +35,7 @@ impl MotionPlant {
             motors: core::array::from_fn(motor),
             power: [0.0; SIDES],
             stuck: [None; SIDES],
+            touch: config.touch.clone(),
         }
     }
 
@@ -74,6 +76,13 @@ impl MotionPlant {
             feedback.mark[i] = reading.mark;
             feedback.limit_minus.set(i, reading.limit_minus);
             feedback.limit_plus.set(i, reading.limit_plus);
+        }
+        if let Some(touch) = &self.touch {
+            let positions = self
+                .motors
+                .each_ref()
+                .map(|motor| motor.as_ref().map(RunningMotor::position));
+            feedback.process = touch.read(feedback.process, &positions);
         }
         feedback
     }

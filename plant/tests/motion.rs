@@ -1,6 +1,6 @@
 //! The shipped machines behind a motion board.
 
-use plant::MotionPlant;
+use plant::{BodyConfig, MotionPlant, TouchConfig};
 use plant_file::{DEFAULT_MACHINE, PlantFile, names};
 use shared::io::{Bits, DacCode, MOTORS, MotionCommand, MotionFeedback, PROCESS_INPUTS, SIDES};
 use shared::kinematics::KinematicsConfig;
@@ -187,4 +187,43 @@ fn every_machine_obeys_and_what_is_not_wired_stays() {
             assert_eq!(motor.is_some(), feedback.counts[i] > 0, "{name}, motor {i}");
         }
     }
+}
+
+#[test]
+fn an_input_is_on_while_the_axes_are_inside_what_they_touch() {
+    let mut file = shipped(DEFAULT_MACHINE);
+    let at = file.motion().truth();
+    // X has two motors, which stand askew.
+    let x = 0.5 * (at[0] + at[1]);
+    let from = [x + 2.0, at[2] - 1.0, at[3] - 1.0];
+    let body = BodyConfig {
+        from,
+        to: [x + 5.0, at[2] + 1.0, at[3] + 1.0],
+    };
+    file.plant.touch = Some(TouchConfig {
+        input: 2,
+        bodies: [body].into_iter().collect(),
+    });
+    let mut plant = file.motion();
+    let mut ratios = [0.0; MOTORS];
+    (ratios[0], ratios[1]) = (0.02, 0.02);
+    let creep = command(ratios);
+    let mut seen = Vec::new();
+    for _ in 0..20_000 {
+        let on = plant.advance(&creep).process;
+        assert_eq!(on.0 & 0b1101, 0b1101, "the others answer");
+        let truth = plant.truth();
+        let inside = (2.0..=5.0).contains(&(0.5 * (truth[0] + truth[1]) - x));
+        assert_eq!(on.get(1), inside);
+        if seen.last() != Some(&inside) {
+            seen.push(inside);
+        }
+    }
+    assert_eq!(seen, [false, true, false]);
+    // Beside it in Y nothing is touched.
+    let mut beside = file.clone();
+    let touch = beside.plant.touch.as_mut().unwrap();
+    (touch.bodies[0].from[1], touch.bodies[0].to[1]) = (at[2] + 1.0, at[2] + 2.0);
+    let mut plant = beside.motion();
+    assert!((0..20_000).all(|_| !plant.advance(&creep).process.get(1)));
 }

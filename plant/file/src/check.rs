@@ -2,8 +2,8 @@
 
 use crate::PlantFile;
 use crate::read::Mistake;
-use plant::{DriveConfig, GratingConfig, MechanicsConfig, ModeConfig, SlideConfig, Wave};
-use shared::io::{MOTOR_NAMES, SLIDE_NAMES};
+use plant::{DriveConfig, GratingConfig, MechanicsConfig, ModeConfig, SlideConfig, TouchConfig, Wave};
+use shared::io::{MOTOR_NAMES, PROCESS_INPUTS, SLIDE_NAMES};
 
 /// Longest dead times of the models \[s\].
 const DRIVE_DEAD_TIME: f64 = 2e-3;
@@ -59,6 +59,9 @@ pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
             slide(&format!("slides.{name}"), config)?;
         }
     }
+    if let Some(config) = &file.plant.touch {
+        touch(config)?;
+    }
     for (number, mount) in file.cameras.iter().enumerate() {
         let [u, v] = mount.beside_spot_mm;
         let key = format!("cameras.{}", number + 1);
@@ -75,6 +78,26 @@ pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
                 ("delay_s", mount.delay_s, BeWithin(0.0, CAMERA_DELAY)),
             ],
         )?;
+    }
+    Ok(())
+}
+
+fn touch(config: &TouchConfig) -> Result<(), Mistake> {
+    let inputs = (1.0, PROCESS_INPUTS as f64);
+    all(
+        "touch",
+        &[("input", config.input.into(), BeWithin(inputs.0, inputs.1))],
+    )?;
+    for body in &config.bodies {
+        for (from, to) in body.from.into_iter().zip(body.to) {
+            // NaN, too.
+            if !(from < to) {
+                return Err((
+                    "touch.bodies".to_owned(),
+                    format!("has a body from {from} to {to}: the first must be the lower one"),
+                ));
+            }
+        }
     }
     Ok(())
 }

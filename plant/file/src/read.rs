@@ -2,7 +2,7 @@
 
 use crate::{CameraMount, PlantFile, check};
 use config::toml_file::{self, TomlError};
-use plant::{MotorConfig, PlantConfig, SlideConfig};
+use plant::{MotorConfig, PlantConfig, SlideConfig, TouchConfig};
 use serde::Deserialize;
 use shared::io::{MOTOR_NAMES, SLIDE_NAMES};
 use std::collections::BTreeMap;
@@ -53,6 +53,7 @@ struct Document {
     slides: BTreeMap<String, SlideConfig>,
     #[serde(default)]
     cameras: BTreeMap<String, CameraMount>,
+    touch: Option<TouchConfig>,
 }
 
 fn first() -> u32 {
@@ -90,6 +91,7 @@ impl PlantFile {
             plant: PlantConfig {
                 motors,
                 slides,
+                touch: document.touch,
                 seed: document.seed,
             },
             cameras: cameras.map(Option::unwrap_or_default),

@@ -100,6 +100,8 @@ pub struct MotionController {
     /// Of the axes at k + 2, where a path begins.
     axes: [f64; AXES],
     measured: [f64; AXES],
+    /// Measured where the last path met what it was run until.
+    met: Option<[f64; AXES]>,
     /// 64 bits, because the time of a tick is counted in ticks.
     tick: u64,
     ticks_lost: u32,
@@ -156,6 +158,7 @@ impl MotionController {
             reference: MotorReference::ZERO,
             axes: [0.0; AXES],
             measured: [0.0; AXES],
+            met: None,
             tick: 0,
             ticks_lost: 0,
             first_tick_us: None,
@@ -286,6 +289,7 @@ impl MotionController {
             lease,
             offset: step.offset,
             excitation: self.capturing.order(),
+            until: self.path.until,
         };
         let now = self.along[0];
         PathTickOutput {
@@ -399,6 +403,7 @@ impl MotionController {
             // Whoever holds the machine to run has let go of it.
             let _ = self.stop();
         }
+        self.watch_until(&input.report);
         let Some(machine) = &self.machine else { return };
         let placed = self.homed && self.enabled && self.homing.is_none();
         if let (true, Some(axis)) = (placed, machine.overrun(&self.measured)) {
@@ -425,6 +430,15 @@ impl MotionController {
         }
         if let (State::Running, Some(side)) = (self.state, faulty) {
             self.stop_for(Fault::Laser { side });
+        }
+    }
+
+    /// The input came that the path is run until: it is given up.
+    fn watch_until(&mut self, report: &ServoReport) {
+        if let (Some(_), Some(met), Some(machine)) = (self.path.until, &report.met, &self.machine) {
+            self.met = Some(machine.axes(met));
+            self.path.until = None;
+            let _ = self.stop();
         }
     }
 

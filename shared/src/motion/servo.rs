@@ -157,6 +157,24 @@ pub struct ServoOrder {
     pub offset: [Option<f64>; MOTORS],
     /// A motor is excited.
     pub excitation: Option<ExcitationOrder>,
+    /// An input of the process that ends the path.
+    pub until: Option<InputState>,
+}
+
+/// What an input of the process may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InputState {
+    /// Its number, from 0.
+    pub input: u8,
+    /// Whether it is on.
+    pub on: bool,
+}
+
+impl InputState {
+    /// Whether the inputs that are on, `process`, have it so.
+    pub fn holds(self, process: Bits) -> bool {
+        process.get(self.input.into()) == self.on
+    }
 }
 
 /// Data from the servo ticks to the path tick.
@@ -196,6 +214,8 @@ pub struct ServoReport {
     pub levels: [DacCode; LEVELS],
     /// Inputs of the process that are on.
     pub process: Bits,
+    /// Positions (mm or rad) at the first servo tick at which the input was as it is to end the path.
+    pub met: Option<[f64; MOTORS]>,
     /// Gates that were shut since the last report because their lease had run out.
     pub lapsed: [bool; SIDES],
     /// The emergency stop now.
@@ -226,6 +246,7 @@ pub struct ServoLoops {
     movements: [MovementState; MOTORS],
     readbacks: [ReadbackState; SIDES],
     exciting: Exciting,
+    until: Option<InputState>,
     enabled: bool,
     enabling: bool,
     coupled: bool,
@@ -271,6 +292,9 @@ impl ServoLoops {
         self.report.lost = self.report.lost.wrapping_add(elapsed.saturating_sub(1));
         let position = self.position(&feedback.counts);
         self.observe(feedback, elapsed);
+        if self.until.is_some_and(|until| until.holds(feedback.process)) {
+            self.report.met = self.report.met.or(Some(position));
+        }
         if let Err(fault) = self.watch(feedback, elapsed) {
             self.trip(fault);
         }
@@ -341,6 +365,10 @@ impl ServoLoops {
         let excitation = order.excitation.as_ref().filter(|_| self.enabled);
         self.exciting
             .give(excitation, self.last_counts.as_ref().map_or(&[], |counts| counts));
+        self.until = order.until;
+        if order.until.is_none() {
+            self.report.met = None;
+        }
         self.enabling = order.enabling;
         self.coupled = order.coupled;
         self.homing = order.homing;

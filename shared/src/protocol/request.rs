@@ -112,6 +112,14 @@ pub enum Request {
     /// Run the path, as [`Request::Run`] does, for [`HOLD_TO_RUN_MS`]; on a path that runs like that, for as long again from now
     /// on. Where that does not come in time, as [`Request::Stop`].
     HoldToRun,
+    /// Run the path, as [`Request::Run`] does, until an input of the process is `on` (or off): then as [`Request::Stop`], and
+    /// [`MotionStatus::met`] says where that was. Refused where the input is so already.
+    RunUntil {
+        /// 0 to 3.
+        input: u8,
+        /// What ends the path: the input comes on, or goes off.
+        on: bool,
+    },
     /// From now on go at this part of the programmed speed; motion board, at any time.
     Override {
         /// 0 to 2.
@@ -383,6 +391,14 @@ pub enum Refusal {
     /// No elements.
     #[error("no path to run: begin one and load its elements")]
     NoPath,
+    /// A path would end before it has begun.
+    #[error("input {} is {} already, before the path begins that it is to end", input + 1, if *.on { "on" } else { "off" })]
+    InputAlready {
+        /// Its number, from 0.
+        input: u8,
+        /// On.
+        on: bool,
+    },
     /// The axes do not stand at the start of the path.
     #[error("axis {} is {distance:.3} mm (or °) away from the start of the path", crate::io::AXIS_NAMES[*axis as usize])]
     NotAtStart {
@@ -519,6 +535,8 @@ pub struct MotionStatus {
     pub searching: u8,
     /// Measured axis positions (mm, degrees).
     pub axes: [f64; AXES],
+    /// Measured axis positions (mm, degrees), to a servo tick, where the input came that the last path was run until, if it came.
+    pub met: Option<[f64; AXES]>,
     /// Commanded axis positions (mm, degrees); as measured while the drives are off. A path starts here.
     pub reference: [f64; AXES],
     /// Number of the loaded path.

@@ -13,6 +13,7 @@ mod parameters;
 mod permits;
 mod process;
 mod readback;
+mod run_until;
 mod steps;
 mod stops;
 mod streaming;

@@ -166,6 +166,11 @@ pub fn seldom() -> Vec<Request> {
         Request::Reset,
         Request::Run,
         Request::HoldToRun,
+        Request::RunUntil { input: 1, on: true },
+        Request::RunUntil {
+            input: 200,
+            on: false,
+        },
         Request::Back,
         Request::Hold,
         Request::Resume,

@@ -3,6 +3,7 @@
 use crate::io::AXES;
 use crate::motion::beams::EventQueue;
 use crate::motion::overlap::Overlap;
+use crate::motion::servo::InputState;
 use crate::trajectory::{PathSpace, SpeedLimits};
 
 /// The path that is loaded, and how far it has come; its elements are in the planner.
@@ -36,6 +37,8 @@ pub(super) struct LoadedPath {
     pub resume: Resume,
     /// Tick after which it is given up, unless hold-to-run is asked for again; `None` of a path that runs by itself.
     pub held_until: Option<u64>,
+    /// Input that ends it before its end.
+    pub until: Option<InputState>,
 }
 
 /// How far a resume has come.
@@ -73,6 +76,7 @@ impl LoadedPath {
         overlap: None,
         resume: Resume::No,
         held_until: None,
+        until: None,
     };
 
     /// The machine will not run it any more.
@@ -81,6 +85,7 @@ impl LoadedPath {
         self.overlap = None;
         self.resume = Resume::No;
         self.held_until = None;
+        self.until = None;
         self.events.clear();
     }
 }

@@ -4,11 +4,12 @@ use super::MotionController;
 use super::loaded::LoadedPath;
 use crate::config::MotionConfig;
 use crate::geometry::PoseOffset;
-use crate::io::{AXES, MOTOR_AXIS};
+use crate::io::{AXES, Bits, MOTOR_AXIS, PROCESS_INPUTS};
 use crate::kinematics::AXIS_UNIT;
 use crate::motion::excitation::{ExcitationOrder, Limits};
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
+use crate::motion::servo::InputState;
 use crate::protocol::{
     Excitation, ExcitationEnd, HOLD_TO_RUN_MS, LOAD_ELEMENTS, MotionStatus, PathElement, Refusal, Request,
     Response, Room,
@@ -88,7 +89,11 @@ impl MotionController {
         if self.capturing.runs()
             && matches!(
                 request,
-                Request::Home | Request::BeginPath { .. } | Request::Run | Request::HoldToRun
+                Request::Home
+                    | Request::BeginPath { .. }
+                    | Request::Run
+                    | Request::HoldToRun
+                    | Request::RunUntil { .. }
             )
         {
             return Response::Refused(Refusal::Exciting);
@@ -112,6 +117,10 @@ impl MotionController {
             }
             Request::Run => self.run(),
             Request::HoldToRun => self.hold_to_run(),
+            Request::RunUntil { input, on } => self.run_until(InputState {
+                input: *input,
+                on: *on,
+            }),
             Request::Override { factor } => self.change_override(*factor),
             Request::Back => self.back(),
             Request::Hold => self.hold(),
@@ -207,6 +216,21 @@ impl MotionController {
             self.run()?;
         }
         self.path.held_until = Some(self.tick + u64::from(HOLD_TO_RUN_MS));
+        Ok(())
+    }
+
+    /// Runs the path until an input is as it says.
+    fn run_until(&mut self, until: InputState) -> Result<(), Refusal> {
+        let InputState { input, on } = until;
+        if usize::from(input) >= PROCESS_INPUTS {
+            return Err(Refusal::Malformed);
+        }
+        if until.holds(Bits(self.inputs.process)) {
+            return Err(Refusal::InputAlready { input, on });
+        }
+        self.run()?;
+        self.met = None;
+        self.path.until = Some(until);
         Ok(())
     }
 
@@ -330,6 +354,7 @@ impl MotionController {
             referenced: self.referenced(),
             searching: self.homing.as_ref().map_or(0, Homing::searching),
             axes: people(&self.measured),
+            met: self.met.as_ref().map(people),
             reference: people(&self.axes),
             path_id: self.path.id,
             s_mm: self.along[0].s,

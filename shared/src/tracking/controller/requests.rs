@@ -58,6 +58,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             | Request::LoadEvents(_)
             | Request::Run
             | Request::HoldToRun
+            | Request::RunUntil { .. }
             | Request::Override { .. }
             | Request::Back
             | Request::Hold
