@@ -3,11 +3,11 @@
 use crate::feeding::{EndedBlock, Feeding};
 use crate::run_in::RunIn;
 use crate::session::{Session, on_path};
-use crate::{JobError, recentring};
+use crate::{JobError, probing, recentring};
 use cam::path::PlannedPath;
 use host_link::Command;
 use host_link::events::{Event, Next, Phase, Question};
-use shared::protocol::{MotionSample, MotionStatus, Request, Role};
+use shared::protocol::{MotionSample, MotionStatus, Request};
 use shared::state::State;
 
 /// A machine that should move, but has not for this time, is taken to be stuck \[s\]; far longer than a queue
@@ -28,7 +28,7 @@ pub(super) fn follow(
     path: &PlannedPath,
     id: u32,
 ) -> Result<(), JobError> {
-    session.command(Role::Motion, &Request::Run)?;
+    probing::begin(session, path)?;
     session.refresh()?;
     let begun = session.tick();
     let mut welding = false;

@@ -16,6 +16,7 @@ mod leading;
 mod marking;
 mod operator;
 mod planned;
+mod probing;
 mod recentring;
 mod run_in;
 mod run_record;
@@ -38,6 +39,7 @@ pub use images::{ImageCameras, Images, ImagesError, Sighting, SightingLog, Worke
 pub use joint::SeenSeam;
 pub use leading::LedLesson;
 pub use marking::{MarkRun, Marking, SeenMarks};
+pub use probing::ProbeError;
 pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
 pub use seam_lesson::{LessonOptions, SeamLesson, TaughtSeam};
 pub use stopped::stopped;
@@ -54,6 +56,7 @@ use host_link::events::{Event, Next, Phase, STOPPED};
 use host_link::spool::Spooling;
 use nc::{InputEvent, Program, Wait};
 use parts::PartFile;
+use probing::Probing;
 use session::Session;
 use shared::io::SIDES;
 use shared::parameter::ParameterError;
@@ -261,6 +264,9 @@ pub enum JobError {
         /// How long ago \[ms\].
         ms: u128,
     },
+    /// A motion with the probe was not as the program has it.
+    #[error(transparent)]
+    Probe(#[from] ProbeError),
     /// A block by hand that is none.
     #[error("the block is not carried out: {0}")]
     Block(String),
@@ -312,10 +318,12 @@ fn not_found(sides: &[bool; SIDES], s_mm: f64, [across, up]: &[f64; 2]) -> Strin
 }
 
 impl JobError {
-    /// A move that was asked for and refused: the machine has not moved, and can be asked for something else.
+    /// A move that was asked for and refused, or whose probe met nothing: the machine stands, and can be asked for something
+    /// else.
     fn is_refused_move(&self) -> bool {
         match self {
             Self::Path(_)
+            | Self::Probe(_)
             | Self::Teach(_)
             | Self::Move(_)
             | Self::Jog(_)
@@ -401,12 +409,14 @@ impl Weld {
     /// Runs a program from where the axes stand.
     fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<(), JobError> {
         let mut elsewhere = Phase::Approaching;
-        let planned = job.plan(program, &self.planner, &session.motion.reference)?;
-        check_attended(session, &planned)?;
-        for (index, path) in planned.into_iter().enumerate() {
+        let mut probing = Probing::new(program, session.motion.reference);
+        let mut left = probing.plan(job, &self.planner)?;
+        check_attended(session, left.as_slice())?;
+        let mut begun = false;
+        while let Some(path) = left.next() {
             // A stop of the program is one of single block.
             let stops = path.waits_before.iter().any(Wait::is_for_operator);
-            if index > 0 && !stops {
+            if std::mem::replace(&mut begun, true) && !stops {
                 let next = match path.first_and_last_line().0 {
                     0 => Next::Approach,
                     line => Next::Line(line),
@@ -419,7 +429,13 @@ impl Weld {
             } else {
                 elsewhere
             };
+            let probe = path.probe;
             self.path(session, path, phase)?;
+            if let Some(probe) = probe {
+                probing.take(self, session, probe)?;
+                left = probing.plan(job, &self.planner)?;
+                check_attended(session, left.as_slice())?;
+            }
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 135] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 140] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -31,6 +31,11 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 135] = [
     ('G', 281, Code::SetHome, "G28.1", Group::NonModal),
     ('G', 300, Code::SecondHome, "G30", Group::NonModal),
     ('G', 301, Code::SetSecondHome, "G30.1", Group::NonModal),
+    ('G', 310, Code::Skip, "G31", Group::Motion),
+    ('G', 382, probe(false, true), "G38.2", Group::Motion),
+    ('G', 383, probe(false, false), "G38.3", Group::Motion),
+    ('G', 384, probe(true, true), "G38.4", Group::Motion),
+    ('G', 385, probe(true, false), "G38.5", Group::Motion),
     ('G', 400, Code::CompensationOff, "G40", Group::Compensation),
     ('G', 410, Code::Left, "G41", Group::Compensation),
     ('G', 411, Code::LeftBy, "G41.1", Group::Compensation),
@@ -140,19 +145,19 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 135] = [
     ('M', 990, Code::Return, "M99", Group::Call),
 ];
 
+/// G38.2 to G38.5.
+const fn probe(away: bool, must: bool) -> Code {
+    Code::Probe { away, must }
+}
+
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 36] = [
+const REFUSED: [(char, u32, &str); 31] = [
     ('G', 70, LATHE),
     ('G', 120, POCKET),
     ('G', 130, POCKET),
-    ('G', 310, PROBING),
     ('G', 330, THREADING),
     ('G', 331, THREADING),
     ('G', 380, PROBING),
-    ('G', 382, PROBING),
-    ('G', 383, PROBING),
-    ('G', 384, PROBING),
-    ('G', 385, PROBING),
     (
         'G',
         440,
@@ -219,8 +224,7 @@ const MACRO: &str =
     "macros are not called after motions, and G65 stands first in its block: write G65 P where it is to run";
 const THREADING: &str =
     "threading and tapping need a spindle that the axes follow, and this machine has none";
-const PROBING: &str =
-    "the boards have no probe input for programs: teach the part instead (seamwright teach)";
+const PROBING: &str = "write G38.2 for a probe that has to touch, or G38.3 for one that may";
 const OVERRIDES: &str = "programs do not lock the operator's feed override: leave it out, or list it under passed_over in [program] of the machine file";
 
 /// G501 to G599: coordinate systems of Siemens, of which there are fewer here.
@@ -312,6 +316,15 @@ pub enum Code {
     SecondHome,
     /// G30.1.
     SetSecondHome,
+    /// G38.2 to G38.5: to where the probe touches, or comes free.
+    Probe {
+        /// It comes free.
+        away: bool,
+        /// Not to is an error.
+        must: bool,
+    },
+    /// G31: as G38.3, in its block only.
+    Skip,
     /// G40.
     CompensationOff,
     /// G41: the tool is to the left of the contour.
@@ -489,7 +502,7 @@ pub enum Code {
 /// Modal groups.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// G0 G1 G2 G3 G5 G5.1 G5.2 G5.3 G6.2 G6.3, CIP and canned cycles.
+    /// G0 G1 G2 G3 G5 G5.1 G5.2 G5.3 G6.2 G6.3 G31 G38.2 to G38.5, CIP and canned cycles.
     Motion,
     /// G80, which may stand beside a motion.
     CycleEnd,
@@ -561,7 +574,12 @@ impl Code {
         }
     }
 
-    /// G0 to G3, CIP and CT: one motion to the coordinates of its block.
+    /// G38.2 to G38.5, and G31.
+    pub fn probes(self) -> bool {
+        matches!(self, Self::Probe { .. } | Self::Skip)
+    }
+
+    /// G0 to G3, CIP, CT, and motions with the probe: one motion to the coordinates of its block.
     pub fn leads_to_an_end(self) -> bool {
         matches!(
             self,
@@ -571,7 +589,7 @@ impl Code {
                 | Self::ArcCounterClockwise
                 | Self::ArcThrough
                 | Self::TangentArc
-        )
+        ) || self.probes()
     }
 
     /// G73 and G81 to G89.

@@ -13,12 +13,13 @@ use super::nurbs::{OpenNurbs, Progress};
 use super::offsets::{Coordinates, Offsets};
 use super::outputs::{Pending, Spindle, coolant, dwell, output};
 use super::parameters::Parameters;
+use super::probing::Probed;
 use super::program::{
     AXIS_WORDS, EXTENSION_WORDS, FeedRate, Motion, Notice, Program, ProgramAction, ProgramPath,
 };
 use super::reading::RemainingBlocks;
 use super::saved_modes::Saved;
-use super::setup::Setup;
+use super::setup::{Options, Setup};
 use super::siemens::corners::Corners;
 use super::siemens::drilling::Drilling;
 use super::tool_length::{Tools, tool};
@@ -35,6 +36,9 @@ const MOST_NOTICES: usize = 100;
 pub(super) struct Interpreter {
     pub(super) setup: Arc<Setup>,
     pub(super) optional_stop: bool,
+    /// What motions with the probe have found, and how many were read.
+    pub(super) probed: Arc<[Probed]>,
+    pub(super) probes: usize,
     pub(super) modal: Modal,
     pub(super) offsets: Offsets,
     pub(super) parameters: Parameters,
@@ -99,10 +103,13 @@ pub(super) struct Interpreter {
 }
 
 impl Interpreter {
-    pub(super) fn new(setup: &Arc<Setup>, optional_stop: bool) -> Self {
+    pub(super) fn new(options: &Options) -> Self {
+        let setup = &options.setup;
         Self {
             setup: setup.clone(),
-            optional_stop,
+            optional_stop: options.optional_stop,
+            probed: options.probed.clone(),
+            probes: 0,
             modal: Modal::new(setup),
             offsets: Offsets::new(&setup.systems),
             parameters: Parameters::default(),
@@ -433,6 +440,7 @@ impl Interpreter {
             welds: self.welds,
             systems: Box::new(std::array::from_fn(|index| self.offsets.systems[index])),
             notices: self.notices,
+            again: None,
         }
     }
 
@@ -530,6 +538,7 @@ impl Interpreter {
             motion: Motion::Stand,
             targets: Vec::new(),
             events: events.into_iter().map(|pending| pending.event(0)).collect(),
+            probe: None,
             rest: None,
         });
         self.open = false;

@@ -190,7 +190,7 @@ impl Interpreter {
         let own = block
             .codes
             .iter()
-            .find(|code| opens_nurbs(code.code) || is_curve(code.code));
+            .find(|code| opens_nurbs(code.code) || is_curve(code.code) || code.code.probes());
         let is_motion = |word: &&super::block::Word| {
             let address = word.address.as_str();
             let own = |code: Code| claims.word(code, address).is_some();
@@ -254,6 +254,11 @@ impl Interpreter {
         let feed = self.feed_rate(block, mode, place, turns_only)?;
         if opens_nurbs(mode) {
             self.open_nurbs(block, claims, mode, place, feed)?;
+            return Ok(true);
+        }
+        if mode.probes() {
+            self.spline_end = None;
+            self.probe(mode, words, feed, place)?;
             return Ok(true);
         }
         let way = match mode {
@@ -460,14 +465,20 @@ impl Interpreter {
         Ok(())
     }
 
-    pub(super) fn rapid(
+    pub(super) fn rapid(&mut self, way: Way, words: Words, place: SourcePosition) -> Result<(), NcError> {
+        self.alone(Motion::Rapid, (way, words), None, place)
+    }
+
+    /// A path of one motion, or of none that still counts as one; no beam of `laser` burns on it.
+    pub(super) fn alone(
         &mut self,
-        mut way: Way,
-        mut words: Words,
+        motion: Motion,
+        (mut way, mut words): (Way, Words),
+        feed: Option<FeedRate>,
         place: SourcePosition,
     ) -> Result<(), NcError> {
         if way != Way::Axes {
-            self.retract(&mut way, &mut words, place, false)?;
+            self.retract(&mut way, &mut words, place, feed.is_some())?;
         }
         self.corners.forget();
         self.said = None;
@@ -475,11 +486,11 @@ impl Interpreter {
         let target = Target {
             way,
             words,
-            feed: None,
+            feed,
             control: self.modal.control,
             place,
         };
-        self.start_path(Motion::Rapid, target);
+        self.start_path(motion, target);
         self.burning.gate = false;
         self.open = false;
         Ok(())
@@ -526,8 +537,12 @@ impl Interpreter {
             waits_before: std::mem::take(&mut self.waits),
             dwell_before_s,
             motion,
-            targets: vec![target],
+            targets: match motion {
+                Motion::Stand => Vec::new(),
+                Motion::Rapid | Motion::Feed => vec![target],
+            },
             events: self.pending.drain(..).map(|pending| pending.event(0)).collect(),
+            probe: None,
             rest: None,
         });
     }

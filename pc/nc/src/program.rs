@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::error::SourcePosition;
 use super::offsets::{CoordinateSystem, SYSTEMS};
+use super::probing::{Again, Probe};
 use super::reading::RemainingBlocks;
 use super::waits::{Until, Wait};
 use shared::geometry::Turn;
@@ -21,7 +22,7 @@ pub struct Program {
     pub paths: Vec<ProgramPath>,
     /// Where the tip is when the program begins, if it relies on that (mm, degrees), and where it first does.
     pub assumes: Option<([f64; AXES], SourcePosition)>,
-    /// Loops, conditions or subroutines: lines are not run in their order.
+    /// Loops, conditions, subroutines or a probe: lines are not run in their order, or depend on what is found.
     pub branches: bool,
     /// Names of the weld data that it calls, by the numbers of [`ProgramAction::WeldOn`].
     pub welds: Vec<String>,
@@ -29,6 +30,8 @@ pub struct Program {
     pub systems: Box<[CoordinateSystem; SYSTEMS]>,
     /// What a person should know of how it was read, and what it says itself (MSG, DEBUG, PRINT).
     pub notices: Vec<Notice>,
+    /// How it is read again, if it has motions with the probe.
+    pub(super) again: Option<Again>,
 }
 
 impl Program {
@@ -71,6 +74,8 @@ pub struct ProgramPath {
     pub targets: Vec<Target>,
     /// What happens on the way, in the order of the program.
     pub events: Vec<ProgramEvent>,
+    /// An input ends it before its end: a path of one straight motion, or one that has moved nothing.
+    pub probe: Option<Probe>,
     /// The blocks of a long path that are not in `targets`; they are read again when they are needed.
     pub rest: Option<RemainingBlocks>,
 }

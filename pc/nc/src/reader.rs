@@ -8,6 +8,7 @@ use super::interpreter::Interpreter;
 use super::levels::{Called, Level};
 use super::line_parts;
 use super::parameters::Parameter;
+use super::probing::Again;
 use super::program::Program;
 use super::setup::Options;
 use super::siemens::calls;
@@ -119,7 +120,7 @@ impl Reader {
             executed: 0,
             effort: Effort::default(),
         };
-        let interpreter = Interpreter::new(&options.setup, options.optional_stop);
+        let interpreter = Interpreter::new(&options);
         Self::at(position, interpreter, options)
     }
 
@@ -322,7 +323,16 @@ impl Reader {
 
     /// The program that was read.
     pub(super) fn end(self) -> Program {
-        self.interpreter.end()
+        let main = self
+            .position
+            .levels
+            .first()
+            .filter(|_| self.interpreter.probes > 0);
+        let again = main.map(|main| Again::new(main.source.clone(), self.options));
+        Program {
+            again,
+            ..self.interpreter.end()
+        }
     }
 
     /// Bytes before the line that was read last.

@@ -2,6 +2,7 @@
 
 use super::laser::Laser;
 use super::offsets::{CoordinateSystem, SYSTEMS};
+use super::probing::{ProbeInput, Probed};
 use super::program::{PathControl, Plane};
 use shared::io::AXES;
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,6 +17,8 @@ pub struct Options {
     pub block_delete: bool,
     /// M1 stops the machine.
     pub optional_stop: bool,
+    /// What motions with the probe have found so far, in the order of the program.
+    pub probed: Arc<[Probed]>,
     /// What the machine brings along.
     pub setup: Arc<Setup>,
 }
@@ -52,6 +55,8 @@ pub struct Setup {
     pub spindle_rpm: Option<f64>,
     /// The beam that M3, M4, M5 and S switch in place of a spindle.
     pub laser: Option<Laser>,
+    /// The probe of G38.
+    pub probe: Option<ProbeInput>,
     /// Axis words before any motion code are those of a G0.
     pub rapid_at_start: bool,
     /// R of cycles that have none is the level where the first of them begins.
@@ -81,6 +86,7 @@ impl Default for Setup {
             grbl_commands: false,
             spindle_rpm: None,
             laser: None,
+            probe: None,
             rapid_at_start: false,
             r_at_initial_level: false,
             feed_mm_min: None,

@@ -435,9 +435,11 @@ impl MotionController {
 
     /// The input came that the path is run until: it is given up.
     fn watch_until(&mut self, report: &ServoReport) {
-        if let (Some(_), Some(met), Some(machine)) = (self.path.until, &report.met, &self.machine) {
+        if self.path.until.is_some()
+            && matches!(self.state, State::Running | State::Holding)
+            && let (Some(met), Some(machine)) = (&report.met, &self.machine)
+        {
             self.met = Some(machine.axes(met));
-            self.path.until = None;
             let _ = self.stop();
         }
     }

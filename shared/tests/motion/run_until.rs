@@ -1,8 +1,9 @@
 //! Paths that an input of the process ends.
 
-use super::bench::{Bench, SCALE, Y, load};
+use super::bench::{Bench, SCALE, Y, config, load};
+use shared::config::OutputConfig;
 use shared::io::Bits;
-use shared::protocol::{PathJoin, Refusal, Request};
+use shared::protocol::{PathAction, PathEvent, PathJoin, Refusal, Request};
 use shared::state::State;
 use shared::trajectory::PathSpace;
 
@@ -135,4 +136,55 @@ fn a_path_that_would_end_at_once_is_not_begun() {
             state: State::Running
         }
     );
+}
+
+#[test]
+fn what_is_switched_on_stays_on_where_a_path_has_met_its_input() {
+    let gas = |bench: &Bench| bench.samples.last().expect("samples").outputs & 1;
+    let path = |until: bool| {
+        let mut config = config();
+        config.process.outputs[0] = Some(OutputConfig { follows_beam: None });
+        let mut bench = Bench::new();
+        bench.done(&Request::ConfigureMotion(config));
+        bench.run_ms(3);
+        bench.done(&Request::Home);
+        bench.until(State::Idle, 5000);
+        bench.begin(PathSpace::Tool);
+        let element = bench.along_y(0.0, 30.0, 20.0, PathJoin::Stop);
+        bench.loaded(&load(element, true));
+        let action = PathAction::Output {
+            output: 0,
+            on: true,
+        };
+        let events = [PathEvent { s_mm: 0.0, action }].into_iter().collect();
+        bench.loaded(&Request::LoadEvents(events));
+        match until {
+            true => bench.done(&TOUCH),
+            false => bench.run(),
+        }
+        bench.run_ms(400);
+        assert_eq!(gas(&bench), 1);
+        bench
+    };
+    let mut bench = path(true);
+    bench.inputs.process = Bits(0b10);
+    bench.until(State::Idle, 1000);
+    for _ in 0..100 {
+        bench.run_ms(1);
+        assert_eq!(gas(&bench), 1);
+    }
+    // Not where somebody stops it, with or without a touch on the way.
+    for touches in [false, true] {
+        let mut bench = path(true);
+        bench.done(&Request::Stop);
+        bench.inputs.process = Bits(u8::from(touches) << 1);
+        bench.until(State::Idle, 1000);
+        bench.run_ms(5);
+        assert_eq!((gas(&bench), bench.status().met), (0, None));
+    }
+    let mut bench = path(false);
+    bench.done(&Request::Stop);
+    bench.until(State::Idle, 1000);
+    bench.run_ms(5);
+    assert_eq!(gas(&bench), 0);
 }

@@ -27,7 +27,7 @@ pub enum FromLineError {
         last: u32,
     },
     /// Lines are not run one after the other.
-    #[error("a program with loops, conditions or subroutines is started at its beginning only")]
+    #[error("a program with loops, conditions, subroutines or a probe is started at its beginning only")]
     Branches,
     /// A weld with weld data is welded as a whole.
     #[error("line {line} is in the weld of line {begins}: start there, or behind line {ends}, where it ends")]

@@ -31,6 +31,8 @@ impl Planner {
         stand: &mut RestState,
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
+        // What an operator wants of a weld is nothing for a probe.
+        let speed_mm_s = speed_mm_s.filter(|_| path.probe.is_none());
         let joined;
         let path = if path.motion == Motion::Feed && (self.tracks || path.rest.is_none()) {
             joined = self.without_short_blocks(path.whole()?, stand)?;
@@ -46,6 +48,7 @@ impl Planner {
             _ => self.tip_motion(path, &events, stand, speed_mm_s)?,
         };
         self.check_inputs(&path.waits_before)?;
+        planned[0].probe = path.probe;
         planned[0].waits_before = path.waits_before.clone();
         planned[0].dwell_before_s = path.dwell_before_s;
         Ok(planned)

@@ -3,7 +3,7 @@
 use super::blocks::{Blocks, Course, Leg};
 use super::shape::Shape;
 use super::{CAPACITY, PathError, TooFast};
-use nc::{Motion, Wait};
+use nc::{Motion, Probe, Wait};
 use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::{Knot, Path, PathSpace, SpeedLimits};
 
@@ -18,6 +18,8 @@ pub struct PlannedPath {
     pub waits_before: Vec<Wait>,
     /// The machine stands for this long before the path begins \[s\] (G4).
     pub dwell_before_s: f64,
+    /// An input ends it before its end.
+    pub probe: Option<Probe>,
     /// The path begins at a corner of this much within a path of the program, which is too sharp to continue
     /// without a stop \[°\].
     pub corner_deg: Option<f64>,
@@ -113,6 +115,7 @@ impl PlannedPath {
             space,
             waits_before: Vec::new(),
             dwell_before_s: 0.0,
+            probe: None,
             corner_deg: None,
             knots: shape.knots.clone(),
             lines: shape

@@ -3,9 +3,10 @@
 use super::targets::Tip;
 use super::tip_of_machine::TipOfMachine;
 use super::{PathError, Planner};
-use config::machine::{ArcPlane, LengthUnit, PathMode, ToolConfig};
+use config::machine::{ArcPlane, LengthUnit, PathMode, ProbeConfig, ToolConfig};
 use nc::{
-    Blend, CoordinateSystem, Laser, PathControl, Plane, Program, ProgramAction, SYSTEMS, Setup, TipAndAxes,
+    Blend, CoordinateSystem, Laser, PathControl, Plane, ProbeInput, Program, ProgramAction, SYSTEMS, Setup,
+    TipAndAxes,
 };
 use shared::io::AXES;
 use std::collections::BTreeSet;
@@ -55,6 +56,7 @@ impl Planner {
             grbl_commands: program.passed_over.grbl_commands(),
             spindle_rpm: program.spindle_rpm,
             laser: self.laser(),
+            probe: self.probe(),
             rapid_at_start: program.motion.is_some(),
             r_at_initial_level: program.r_at_initial_level,
             feed_mm_min: program.feed_mm_min,
@@ -81,6 +83,15 @@ impl Planner {
             side,
             full_s: words.full_s,
             full_watt: (*self.largest_power.get(usize::from(side))?)?,
+        })
+    }
+
+    /// The probe of G38, where the machine file names one.
+    fn probe(&self) -> Option<ProbeInput> {
+        let ProbeConfig { input, opens } = self.program.probe.as_ref()?;
+        Some(ProbeInput {
+            input: *self.input_names.get(input)?,
+            touching: !opens,
         })
     }
 

@@ -87,6 +87,14 @@ pub enum Mistake {
         /// Name of the output.
         name: String,
     },
+    /// No input is that of the probe.
+    #[error(
+        "program.probe names \"{input}\", but needs an [inputs.{input}] that answers nothing: it must not stop the machine"
+    )]
+    ProbeInput {
+        /// Name of the input.
+        input: String,
+    },
     /// An input has only one of the keys of an answer.
     #[error(
         "{key} has {given} without {missing}: an input that answers needs both, one that programs wait for neither"
@@ -136,6 +144,7 @@ impl Mistake {
                 key.clone()
             }
             Self::SpindleReverse { .. } => "program.spindle_reverse".to_owned(),
+            Self::ProbeInput { .. } => "program.probe".to_owned(),
             Self::AnswersNothing { key, .. } => format!("{key}.answers"),
             Self::Optics { .. } => "cameras.optics".to_owned(),
             Self::TrackerIncomplete { table } => (*table).to_owned(),

@@ -13,7 +13,7 @@ pub use cameras::{CameraConfig, JointForm};
 pub use error::{MachineError, Mistake};
 pub use process_io::{InputNames, OutputNames};
 pub use program::{
-    ArcPlane, FirstMotion, LaserWords, LengthUnit, PassedOver, PathMode, ProgramConfig, Rotary,
+    ArcPlane, FirstMotion, LaserWords, LengthUnit, PassedOver, PathMode, ProbeConfig, ProgramConfig, Rotary,
 };
 pub use tools::ToolConfig;
 pub use weak_protection::WeakProtection;

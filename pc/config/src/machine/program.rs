@@ -38,6 +38,8 @@ pub struct ProgramConfig {
     pub feed_mm_min: Option<f64>,
     /// The beam that M3, M4, M5 and S switch.
     pub laser: Option<LaserWords>,
+    /// The probe of G38.
+    pub probe: Option<ProbeConfig>,
 }
 
 impl Default for ProgramConfig {
@@ -56,6 +58,7 @@ impl Default for ProgramConfig {
             r_at_initial_level: false,
             feed_mm_min: None,
             laser: None,
+            probe: None,
         }
     }
 }
@@ -68,6 +71,17 @@ pub struct LaserWords {
     pub beam: u8,
     /// S of its full power.
     pub full_s: f64,
+}
+
+/// A probe that touches the work.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProbeConfig {
+    /// Name of the input of the process that it switches.
+    pub input: String,
+    /// The input goes off when it touches; it comes on then otherwise.
+    #[serde(default)]
+    pub opens: bool,
 }
 
 /// Unit of lengths.
@@ -219,6 +233,7 @@ pub(super) fn check(machine: &MachineFile) -> Result<(), Mistake> {
     }
     laser(machine)?;
     spindle_reverse(machine)?;
+    probe(machine)?;
     let fitted = machine.motion.kinematics.fitted();
     for (axis, angle) in (AXES - 3..).zip(program.rotary_deg.into_array()) {
         let Some(angle) = angle else { continue };
@@ -247,6 +262,18 @@ fn spindle_reverse(machine: &MachineFile) -> Result<(), Mistake> {
         return Ok(());
     }
     Err(Mistake::SpindleReverse { name: name.clone() })
+}
+
+/// There is an input of this name, which answers nothing.
+fn probe(machine: &MachineFile) -> Result<(), Mistake> {
+    let Some(ProbeConfig { input, .. }) = &machine.program.probe else {
+        return Ok(());
+    };
+    let number = machine.inputs.get(input).copied();
+    match number.and_then(|number| machine.motion.process.inputs.get(usize::from(number))) {
+        Some(None) => Ok(()),
+        _ => Err(Mistake::ProbeInput { input: input.clone() }),
+    }
 }
 
 /// The beam is there, no other one is a spindle, and its S says how much of its power.

@@ -493,6 +493,7 @@ fn programs_begin_with_the_modes_that_the_file_says() {
         r_at_initial_level: true,
         feed_mm_min: Some(300.0),
         laser: None,
+        probe: None,
     };
     assert_eq!(of(all), wanted);
     let passed = of("[program]\npassed_over = [\"M31\", \"M50\", \"M9026\"]").passed_over;
@@ -505,6 +506,21 @@ fn programs_begin_with_the_modes_that_the_file_says() {
     let laser = of("[program]\nlaser = { beam = 1, full_s = 1000 }").laser;
     let (beam, full_s) = (1, 1000.0);
     assert_eq!(laser, Some(LaserWords { beam, full_s }));
+}
+
+#[test]
+fn a_probe_is_an_input_that_answers_nothing() {
+    let with = |more: &str, probe: &str| pipe_with(&format!("{more}[program]\nprobe = {probe}")).0;
+    let touch = "[inputs.touch]\nnumber = 2\n";
+    let machine = MachineFile::parse("m.toml", &with(touch, "{ input = \"touch\", opens = true }")).unwrap();
+    let (input, opens) = ("touch".to_owned(), true);
+    assert_eq!(machine.program.probe, Some(ProbeConfig { input, opens }));
+    let answers = "[outputs.gas]\nnumber = 1\n[inputs.touch]\nnumber = 2\nanswers = \"gas\"\nwithin_ms = 5\n";
+    for more in ["", answers] {
+        let error = error_of(&with(more, "{ input = \"touch\" }"));
+        let said = "program.probe names \"touch\", but needs an [inputs.touch] that answers nothing";
+        assert!(error.contains(said), "{error}");
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Outputs, spindle, coolant and tool in words.
 
+use crate::probing::Probe;
 use crate::program::ProgramAction;
 use crate::waits::Wait;
 use shared::geometry::Turn;
@@ -51,6 +52,14 @@ pub(super) fn action(action: &ProgramAction, welds: &[String]) -> String {
         }
         ProgramAction::ChangeTool(number) => format!("tool {number} must be in the machine"),
     }
+}
+
+/// What ends a motion with the probe.
+pub(super) fn probe(probe: &Probe) -> String {
+    let Probe { input, away, must, .. } = probe;
+    let what = if *away { "comes free" } else { "touches" };
+    let must = if *must { "must" } else { "may" };
+    format!("ends where the probe (input {}) {what}, which it {must}", input + 1)
 }
 
 /// What the machine waits for.

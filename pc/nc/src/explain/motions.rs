@@ -111,6 +111,9 @@ impl Block<'_> {
                 self.event(event, "with this motion");
             }
             self.motion(target);
+            if let Some(probe) = &path.probe {
+                self.facts.push(events::probe(probe));
+            }
         }
     }
 

@@ -368,7 +368,7 @@ fn codes_of_other_controllers_that_concern_no_motion_are_told() {
     for (code, why) in [
         ("G254", "do not turn"),
         ("G12 I5 F100", "pockets"),
-        ("G31 Z-5", "no probe input"),
+        ("G31 Z-5 F9", "no probe"),
         ("G44 H1", "write G43"),
         ("M97 P5", "write M98"),
         ("M198 P5", "write M98"),

@@ -13,6 +13,7 @@ mod mirror;
 mod modes;
 mod nurbs;
 mod outputs;
+mod probing;
 mod reading;
 mod siemens;
 mod tape_marks;

@@ -100,6 +100,7 @@ fn planned() -> PlannedPath {
         space: PathSpace::Tool,
         waits_before: Vec::new(),
         dwell_before_s: 0.0,
+        probe: None,
         corner_deg: None,
         knots: knots.collect(),
         lines: vec![],

@@ -131,10 +131,15 @@ impl MotionController {
                 self.state = self.state.after(Event::PathEnd).unwrap_or(self.state);
             }
             State::Stopping => {
+                // One that has met what it was run until has come to its end: what is on between two paths stays on.
+                let met = self.path.until.and(self.met);
+                match met.filter(|_| self.pending.is_none()) {
+                    Some(_) => self.beams.settle(self.along[0].s),
+                    None => self.beams = Beams::NONE,
+                }
                 self.path.forget();
                 // The axes stay where they are, and that is where a path begins.
                 self.superimposed = Superimposed::NONE;
-                self.beams = Beams::NONE;
                 match self.pending.take() {
                     Some(fault) => self.trip(fault),
                     None => self.state = self.state.after(Event::AtRest).unwrap_or(self.state),

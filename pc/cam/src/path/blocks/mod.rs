@@ -79,6 +79,7 @@ impl Planner {
             space: PathSpace::Tool,
             waits_before: Vec::new(),
             dwell_before_s: 0.0,
+            probe: None,
             corner_deg: None,
             knots: Vec::new(),
             lines: vec![(summary.length_mm, summary.lines.1)],

@@ -259,6 +259,7 @@ fn standing(actions: &[PathAction], dwell_before_s: f64, place: SourcePosition) 
             .iter()
             .map(|action| output(0, 0.0, *action, place))
             .collect(),
+        probe: None,
         rest: None,
     }
 }
@@ -270,6 +271,7 @@ fn feeding(targets: Vec<Target>, events: Vec<ProgramEvent>, dwell_before_s: f64)
         motion: Motion::Feed,
         targets,
         events,
+        probe: None,
         rest: None,
     }
 }

@@ -1,0 +1,109 @@
+//! Motions of a program with the probe: what the machine finds, and how the program goes on with it.
+
+use crate::session::Session;
+use crate::{Job, JobError, Weld};
+use cam::path::{PlannedPath, Planner};
+use host_link::boards::LinkError;
+use host_link::events::Event;
+use nc::{NcError, Probe, Probed, Program};
+use shared::io::AXES;
+use shared::protocol::{Refusal, Request, Role};
+use std::vec::IntoIter;
+use thiserror::Error;
+
+/// What becomes of a motion with the probe that was not as the program has it. The machine stands.
+#[derive(Debug, Error)]
+pub enum ProbeError {
+    /// The motion has not begun.
+    #[error(
+        "line {}: {}: before the motion begins the probe {} already: lead it elsewhere first, or look at its input",
+        .0.place.line, .0.code, if .0.away { "touches nothing" } else { "touches" }
+    )]
+    Already(Probe),
+    /// The motion has come to its end.
+    #[error(
+        "line {}: {}: at the end of the motion the probe {}: look at where the work is, or write {} if that may be",
+        .0.place.line, .0.code,
+        if .0.away { "touches still" } else { "has touched nothing" },
+        if .0.away { "G38.5" } else { "G38.3" }
+    )]
+    Nothing(Probe),
+    /// The program cannot be run with what was found.
+    #[error("with what the probe found, the program does not go on: {0}")]
+    After(NcError),
+}
+
+/// Has the board run `path`, to its end or until the probe says so.
+pub(super) fn begin(session: &mut Session, path: &PlannedPath) -> Result<(), JobError> {
+    let Some(probe) = path.probe else {
+        return Ok(session.command(Role::Motion, &Request::Run)?);
+    };
+    let (input, on) = (probe.input, probe.on);
+    let begun = session.command(Role::Motion, &Request::RunUntil { input, on });
+    begun.map_err(|error| match error {
+        LinkError::Refused {
+            refusal: Refusal::InputAlready { .. },
+            ..
+        } => ProbeError::Already(probe).into(),
+        error => error.into(),
+    })
+}
+
+/// Paths of a program, and what its motions with the probe have found.
+pub(super) struct Probing<'a> {
+    program: &'a Program,
+    /// Where the axes stood when it began (mm, degrees).
+    from: [f64; AXES],
+    found: Vec<Probed>,
+}
+
+impl<'a> Probing<'a> {
+    pub fn new(program: &'a Program, from: [f64; AXES]) -> Self {
+        Self {
+            program,
+            from,
+            found: Vec::new(),
+        }
+    }
+
+    /// All paths that are left.
+    pub fn plan(&self, job: &Job, planner: &Planner) -> Result<IntoIter<PlannedPath>, JobError> {
+        let again;
+        let mut program = self.program;
+        if !self.found.is_empty() {
+            again = program.probed(&self.found).map_err(ProbeError::After)?;
+            program = &again;
+        }
+        let mut left = job.plan(program, planner, &self.from)?.into_iter();
+        for _ in &self.found {
+            left.find(|path| path.probe.is_some());
+        }
+        Ok(left)
+    }
+
+    /// Takes what the last motion, that of `probe`, has found.
+    pub fn take(&mut self, weld: &Weld, session: &mut Session, probe: Probe) -> Result<(), JobError> {
+        let tip = |axes: &[f64; AXES]| {
+            let tip = weld.planner.tip(axes);
+            let [x, y, z] = tip.position_mm;
+            let [a, b, c] = tip.angles_deg;
+            [x, y, z, a, b, c]
+        };
+        let met = session.motion.met.as_ref().map(tip);
+        let stands = tip(&session.motion.reference);
+        let (line, code) = (probe.place.line, probe.code);
+        let text = match met {
+            None if probe.must => return Err(ProbeError::Nothing(probe).into()),
+            None => format!("line {line}: {code}: the probe has met nothing"),
+            Some([x, y, z, ..]) => {
+                let what = if probe.away { "came free" } else { "touched" };
+                format!(
+                    "line {line}: {code}: the probe {what} with the tip at X{x:.3} Y{y:.3} Z{z:.3} of the machine"
+                )
+            }
+        };
+        session.control.publish(Event::Message(text));
+        self.found.push(Probed { met, stands });
+        Ok(())
+    }
+}

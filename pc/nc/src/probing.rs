@@ -1,0 +1,215 @@
+//! Motions that end where the probe touches, or where it no longer does: G38.2 to G38.5 and G31.
+//!
+//! A program is read before the machine moves, and nobody knows then what the probe will meet: it is taken to touch at the end
+//! of its motion. When the machine has been there, the program is read again from its beginning with what was found
+//! ([`Program::probed`]), and goes on behind it.
+
+use super::codes::Code;
+use super::error::{NcError, Problem, SourcePosition};
+use super::interpreter::Interpreter;
+use super::offsets::Coordinates;
+use super::parameters::Parameter;
+use super::program::{FeedRate, Motion, Program, Way, Words};
+use super::reading::{KEPT, read};
+use super::setup::Options;
+use super::source::Source;
+use shared::io::AXES;
+use std::fmt;
+use std::sync::Arc;
+
+/// X of where the last probe touched, in coordinates of the program, and whether it did.
+const FOUND: u32 = 5061;
+const SUCCESS: u32 = 5070;
+/// What does not move the tip \[mm\].
+const SAME: f64 = 1e-6;
+
+/// The probe of a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProbeInput {
+    /// Input of the process that it switches, from 0.
+    pub input: u8,
+    /// Whether that is on while it touches.
+    pub touching: bool,
+}
+
+/// A motion that an input ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Probe {
+    /// The input, from 0,
+    pub input: u8,
+    /// and what ends the motion: it comes on, or goes off.
+    pub on: bool,
+    /// It must not come to its end: G38.2 and G38.4.
+    pub must: bool,
+    /// The probe is to come free: G38.4 and G38.5.
+    pub away: bool,
+    /// The code.
+    pub code: &'static str,
+    /// Where the program says so.
+    pub place: SourcePosition,
+}
+
+/// What a machine found: X Y Z \[mm\], A B C \[°\] of its tip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probed {
+    /// Where the probe touched, or came free, if it did.
+    pub met: Option<[f64; AXES]>,
+    /// Where the machine came to rest after it.
+    pub stands: [f64; AXES],
+}
+
+/// How a program is read again.
+#[derive(Clone)]
+pub(super) struct Again {
+    source: Source,
+    options: Options,
+}
+
+impl Again {
+    pub fn new(source: Source, options: Options) -> Self {
+        Self { source, options }
+    }
+}
+
+impl fmt::Debug for Again {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Again")
+    }
+}
+
+/// It says nothing of what a program does.
+impl PartialEq for Again {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Program {
+    /// The same program after its first motions with the probe, of which is known what they `found`.
+    ///
+    /// # Errors
+    /// What follows them does not go with what was found, or the program is not as it was when it was read.
+    pub fn probed(&self, found: &[Probed]) -> Result<Self, NcError> {
+        let Some(again) = &self.again else {
+            return Ok(self.clone());
+        };
+        let options = Options {
+            probed: Arc::from(found),
+            ..again.options.clone()
+        };
+        read(&again.source, options, KEPT)
+    }
+}
+
+impl Interpreter {
+    /// The straight motion of `mode`, G38 or G31, to where `words` say.
+    pub(super) fn probe(
+        &mut self,
+        mode: Code,
+        words: Words,
+        feed: FeedRate,
+        place: SourcePosition,
+    ) -> Result<(), NcError> {
+        let code = mode.name();
+        let impossible = |why| Err(Problem::Impossible { code, why }.at(place));
+        let (away, must) = match mode {
+            Code::Probe { away, must } => (away, must),
+            _ => (false, false),
+        };
+        let Some(probe) = self.setup.probe else {
+            return impossible(
+                "this machine has no probe: name the input of one in [program] of the machine file (probe_input)",
+            );
+        };
+        if self.compensation.is_on() {
+            return impossible("cutter compensation is on: write G40 before");
+        }
+        if self.welding {
+            return impossible("a weld is open: write WELDOFF before");
+        }
+        if let FeedRate::InverseTime(_) = feed {
+            return impossible("how long the motion takes is not known: write G94");
+        }
+        if let Some(opening) = self.pending.iter().find(|pending| pending.opens()) {
+            let (code, why) = (
+                opening.code,
+                "no beam or tracking goes on with a motion of the probe",
+            );
+            return Err(Problem::Impossible { code, why }.at(opening.place));
+        }
+        let from = self.position(&[0, 1, 2, 3, 4, 5], place)?;
+        self.learn(&words);
+        if (3..AXES).any(|axis| self.at[axis] != from[axis]) || words.extension != [None; 2] {
+            return impossible("it leads X Y Z, and turns or extends nothing");
+        }
+        if distance(&from, &self.at) < SAME {
+            return impossible("it must lead elsewhere than where the tip is");
+        }
+        // It is begun at its beginning: what follows depends on what is found.
+        self.branches = true;
+        let found = self.probed.get(self.probes).copied();
+        self.probes += 1;
+        let met = match found {
+            Some(found) => {
+                let there = self.end_of_tool(&found.stands);
+                self.at[..3].copy_from_slice(&there[..3]);
+                found.met.map(|met| self.end_of_tool(&met))
+            }
+            None => {
+                let text = format!(
+                    "{code} is taken to touch at the end of its motion until the machine has been there: what follows may be elsewhere"
+                );
+                self.tell_once(text, place);
+                Some(self.at)
+            }
+        };
+        // A motion that has moved nothing is none any more.
+        let motion = match distance(&from, &self.at) < SAME {
+            true => Motion::Stand,
+            false => Motion::Feed,
+        };
+        self.alone(motion, (Way::Line, self.words_to_here(words)), Some(feed), place)?;
+        if let Some(path) = self.paths.last_mut() {
+            path.probe = Some(Probe {
+                input: probe.input,
+                on: probe.touching != away,
+                must,
+                away,
+                code,
+                place,
+            });
+        }
+        self.note_found(met).map_err(|problem| problem.at(place))?;
+        // Of Fanuc, for its block only: the motion of before, or none.
+        if mode == Code::Skip {
+            self.modal.motion = None;
+        }
+        Ok(())
+    }
+
+    /// Words of X Y Z where the tip is.
+    fn words_to_here(&self, mut words: Words) -> Words {
+        for axis in 0..3 {
+            words.axes[axis] = Some(self.at[axis]);
+        }
+        words
+    }
+
+    /// `#5061` to `#5066`: where the probe touched, or where its motion has ended. `#5070`: whether it did.
+    fn note_found(&mut self, met: Option<Coordinates>) -> Result<(), Problem> {
+        let there = self.offsets.to_programmed(&met.unwrap_or(self.at));
+        for (number, (axis, value)) in (FOUND..).zip(there.into_iter().enumerate()) {
+            let unit = if axis < 3 { self.modal.unit() } else { 1.0 };
+            self.parameters.set(&Parameter::Numbered(number), value / unit)?;
+        }
+        let success = f64::from(u8::from(met.is_some()));
+        self.parameters.set(&Parameter::Numbered(SUCCESS), success)
+    }
+}
+
+fn distance(from: &Coordinates, to: &Coordinates) -> f64 {
+    (0..3)
+        .map(|axis| (to[axis] - from[axis]).powi(2))
+        .sum::<f64>()
+        .sqrt()
+}
