@@ -548,7 +548,7 @@ impl Interpreter {
     }
 
     /// Whether `words` lead an axis elsewhere.
-    fn moves(&self, words: &Words, axis: usize) -> bool {
+    pub(super) fn moves(&self, words: &Words, axis: usize) -> bool {
         words.axes[axis].is_some_and(|value| !self.known[axis] || value != self.at[axis])
     }
 

@@ -137,11 +137,11 @@ impl Interpreter {
             );
             return Err(Problem::Impossible { code, why }.at(opening.place));
         }
-        let from = self.position(&[0, 1, 2, 3, 4, 5], place)?;
-        self.learn(&words);
-        if (3..AXES).any(|axis| self.at[axis] != from[axis]) || words.extension != [None; 2] {
+        let from = self.position(&[0, 1, 2], place)?;
+        if (3..AXES).any(|axis| self.moves(&words, axis)) || words.extension != [None; 2] {
             return impossible("it leads X Y Z, and turns or extends nothing");
         }
+        self.learn(&words);
         if distance(&from, &self.at) < SAME {
             return impossible("it must lead elsewhere than where the tip is");
         }

@@ -152,10 +152,7 @@ fn what_is_switched_on_stays_on_where_a_path_has_met_its_input() {
         bench.begin(PathSpace::Tool);
         let element = bench.along_y(0.0, 30.0, 20.0, PathJoin::Stop);
         bench.loaded(&load(element, true));
-        let action = PathAction::Output {
-            output: 0,
-            on: true,
-        };
+        let action = PathAction::Output { output: 0, on: true };
         let events = [PathEvent { s_mm: 0.0, action }].into_iter().collect();
         bench.loaded(&Request::LoadEvents(events));
         match until {

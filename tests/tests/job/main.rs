@@ -7,6 +7,7 @@ mod drawing;
 mod from_line;
 mod holds;
 mod machines;
+mod probing;
 mod real_cameras;
 mod recentring;
 mod seam_ends;

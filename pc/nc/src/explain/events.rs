@@ -56,10 +56,15 @@ pub(super) fn action(action: &ProgramAction, welds: &[String]) -> String {
 
 /// What ends a motion with the probe.
 pub(super) fn probe(probe: &Probe) -> String {
-    let Probe { input, away, must, .. } = probe;
+    let Probe {
+        input, away, must, ..
+    } = probe;
     let what = if *away { "comes free" } else { "touches" };
     let must = if *must { "must" } else { "may" };
-    format!("ends where the probe (input {}) {what}, which it {must}", input + 1)
+    format!(
+        "ends where the probe (input {}) {what}, which it {must}",
+        input + 1
+    )
 }
 
 /// What the machine waits for.
