@@ -6,6 +6,7 @@ pub mod fuzz;
 mod hold;
 mod operator;
 mod pictures;
+pub mod plate;
 mod prediction;
 pub mod range;
 mod references;

@@ -4,8 +4,8 @@ use crate::arc::{self, Arc};
 use crate::list::{Item, Kind, List, Motion, Place, straight, turned, turns_only};
 use crate::peer::{self, TOOLS};
 use nc::{
-    ArcForm, ArcWay, FeedRate, Move, NcError, Options, Program, ProgramAction, ProgramEvent, Setup, Target,
-    TipAndAxes, Tool, Until, Way,
+    ArcForm, ArcWay, FeedRate, Move, NcError, Options, ProbeInput, Program, ProgramAction, ProgramEvent,
+    Setup, Target, TipAndAxes, Tool, Until, Way,
 };
 use serde::{Deserialize, Serialize};
 use shared::geometry::Turn;
@@ -61,6 +61,10 @@ fn options(file: &Path) -> Options {
         folders: file.parent().map(Path::to_owned).into_iter().collect(),
         tools: (1..=TOOLS).map(|number| (number, tool(number))).collect(),
         kinematics: Some(sync::Arc::new(Plain)),
+        probe: Some(ProbeInput {
+            input: 0,
+            touching: true,
+        }),
         ..Setup::default()
     };
     Options {
@@ -111,7 +115,10 @@ fn flatten(program: Program) -> Result<Vec<Item>, NcError> {
         for next in path.moves() {
             let Move { target, events } = next?;
             events.iter().for_each(|event| happens(&mut list, event));
-            let motion = motion(&list.at().unwrap_or_default(), &target);
+            let mut motion = motion(&list.at().unwrap_or_default(), &target);
+            if path.probe.is_some() {
+                motion.kind = Kind::Probe;
+            }
             list.motion(motion);
         }
     }

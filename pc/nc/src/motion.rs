@@ -259,6 +259,8 @@ impl Interpreter {
         if mode.probes() {
             self.spline_end = None;
             self.probe(mode, words, feed, place)?;
+            // Of Fanuc, for its block only.
+            self.modal.motion = self.modal.motion.filter(|code| *code != Code::Skip);
             return Ok(true);
         }
         let way = match mode {

@@ -1,7 +1,7 @@
 //! Motions that end where the probe touches, or where it no longer does: G38.2 to G38.5 and G31.
 //!
-//! A program is read before the machine moves, and nobody knows then what the probe will meet: it is taken to touch at the end
-//! of its motion. When the machine has been there, the program is read again from its beginning with what was found
+//! A program is read before the machine moves, and nobody knows then what the probe will meet: its motions are taken to go to
+//! their ends, where those of G38.2 and G38.4 meet what they must. When the machine has been there, the program is read again from its beginning with what was found
 //! ([`Program::probed`]), and goes on behind it.
 
 use super::codes::Code;
@@ -143,7 +143,10 @@ impl Interpreter {
         }
         self.learn(&words);
         if distance(&from, &self.at) < SAME {
-            return impossible("it must lead elsewhere than where the tip is");
+            return match must {
+                true => impossible("it must lead elsewhere than where the tip is"),
+                false => self.note_found(None).map_err(|problem| problem.at(place)),
+            };
         }
         // It is begun at its beginning: what follows depends on what is found.
         self.branches = true;
@@ -157,10 +160,10 @@ impl Interpreter {
             }
             None => {
                 let text = format!(
-                    "{code} is taken to touch at the end of its motion until the machine has been there: what follows may be elsewhere"
+                    "{code} is taken to go to the end of its motion until the machine has been there: what follows may be elsewhere"
                 );
                 self.tell_once(text, place);
-                Some(self.at)
+                must.then_some(self.at)
             }
         };
         // A motion that has moved nothing is none any more.
@@ -179,12 +182,7 @@ impl Interpreter {
                 place,
             });
         }
-        self.note_found(met).map_err(|problem| problem.at(place))?;
-        // Of Fanuc, for its block only: the motion of before, or none.
-        if mode == Code::Skip {
-            self.modal.motion = None;
-        }
-        Ok(())
+        self.note_found(met).map_err(|problem| problem.at(place))
     }
 
     /// Words of X Y Z where the tip is.

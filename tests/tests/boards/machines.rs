@@ -1,6 +1,9 @@
 //! Boards wired to another machine than the dual-beam gantry.
 
-use crate::pair::{Pair, assert_served};
+use crate::pair::{Pair, assert_served, scratch};
+use plant_file::PlantChoice;
+use std::fs;
+use system_tests::plate::{self, MEASURE, OverPlate};
 use system_tests::{JOBS, assert_within_limits, weld_job};
 
 /// The shipped job of a machine keeps the limits of its part.
@@ -30,4 +33,15 @@ fn the_wire_arc_machine_keeps_the_limits_of_its_leaf() {
 #[test]
 fn the_stir_gantry_keeps_the_limits_of_its_contour() {
     assert_welds("stir-gantry");
+}
+
+#[test]
+fn the_laser_cutter_finds_a_plate_by_touching_it() {
+    let plant = scratch("plate.plant.toml");
+    fs::write(&plant, plate::plant()).expect("a plant file");
+    let mut pair = Pair::for_jobs_on(&PlantChoice::File(plant), "plate", "ac-head");
+    let found = OverPlate::run(&mut pair.connect_without_tracker(), MEASURE, None);
+    found.assert_found();
+    assert_served(&found.ended.report);
+    pair.assert_off();
 }

@@ -68,7 +68,7 @@ fn piece(writer: &mut Writer, depth: usize) {
     if writer.random.percent(1) {
         wrong::block(writer);
     }
-    match writer.random.below(24) {
+    match writer.random.below(25) {
         0..=5 => motion::straight(writer),
         6..=9 => motion::arc(writer),
         10 => motion::inverse_time(writer),
@@ -80,6 +80,7 @@ fn piece(writer: &mut Writer, depth: usize) {
         18 => modes::control(writer),
         19 => cycles::cycle(writer),
         20 => expression::assignments(writer),
+        21 => motion::probe(writer),
         _ if depth < 2 => flow::flow(writer, depth),
         _ => motion::straight(writer),
     }

@@ -164,3 +164,21 @@ pub fn of_the_axes(writer: &mut Writer) {
         _ => writer.block(&format!("G53 G0 {word}")),
     }
 }
+
+/// A probe, and a motion from what it has found. The stand-in for a machine in `rs274` touches at the end, as ours, and then goes
+/// back by 0.254 mm, so that the motion says all of where it leads.
+pub fn probe(writer: &mut Writer) {
+    let code = *writer.random.of(&["G38.2", "G38.3", "G38.4", "G38.5"]);
+    let letter = *writer.random.of(&XYZ);
+    let (to, feed) = (writer.length(60.0), writer.random.between(50, 600));
+    let to = writer.value(to);
+    writer.block(&format!("{code} {letter}{to} F{feed}"));
+    if writer.random.percent(30) {
+        let (number, name) = (writer.random.below(3) + 5061, writer.label());
+        writer.block(&format!("#<found{name}> = #{number}"));
+        writer.block(&format!("G0 X#5061 Y[#5062 + 1] Z[#<found{name}> / 2]"));
+    } else {
+        let by = writer.random.between(1, 9);
+        writer.block(&format!("G1 X[#5061 - {by}] Y#5062 Z[#5063 + {by}] F600"));
+    }
+}

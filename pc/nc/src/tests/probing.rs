@@ -88,7 +88,7 @@ fn a_motion_with_the_probe_is_a_path_of_its_own() {
 fn the_program_goes_on_with_what_was_found() {
     let body = "G10 L2 P1 X100 Y0 Z10\nG0 X0 Y0 Z20\nG38.2 Z-20 F60\n#1=#5063\nG92 Z0\nG1 Z5\nG0 X[#5061+1] Z[#1]\nM2";
     let program = with_probe(body).unwrap();
-    // Taken to touch at its end: Z-20 of the program is -10 of the machine, and Z0 from there on.
+    // Until it is known, it touches at its end: Z-20 of the program is -10 of the machine, and Z0 from there on.
     let shape = ends(&program);
     assert_eq!(shape[3], [Some(100.0), Some(0.0), Some(-10.0)]);
     assert_eq!(shape[4][2], Some(-5.0));
@@ -116,13 +116,13 @@ fn conditions_see_whether_it_touched() {
                 o1 endwhile\nG0 Z[#5061]\nM2";
     let program = with_probe(body).unwrap();
     let probes = |program: &Program| program.paths.iter().filter(|path| path.probe.is_some()).count();
-    assert_eq!(probes(&program), 1, "the first is taken to touch");
+    assert_eq!(probes(&program), 3, "they are taken to touch nothing");
     let none = |x| Probed {
         met: None,
         stands: at(x, 0.0, 0.0),
     };
     let program = program.probed(&[none(10.0)]).unwrap();
-    assert_eq!(probes(&program), 2);
+    assert_eq!(probes(&program), 3);
     let met = Probed {
         met: Some(at(17.25, 0.0, 0.0)),
         stands: at(17.3, 0.0, 0.0),
@@ -165,6 +165,13 @@ fn a_probe_that_touched_at_once_has_moved_nothing() {
     assert_eq!((path.motion, path.targets.len()), (Motion::Stand, 0));
     assert!(path.probe.is_some());
     assert_eq!(program.paths.len(), 4);
+}
+
+#[test]
+fn a_way_of_nothing_meets_nothing() {
+    let program = with_probe("#5070=1\nG38.3 Z0 F60\nG0 X[#5070 + 5]\nM2").unwrap();
+    assert!(program.paths.iter().all(|path| path.probe.is_none()));
+    assert_eq!(ends(&program).last().unwrap()[0], Some(5.0));
 }
 
 #[test]
