@@ -28,6 +28,8 @@ pub enum Phase {
     Welding,
     /// Between two welds.
     MovingOn,
+    /// On the way to what a probe touches.
+    Probing,
     /// At rest for a time that the program asks for.
     Dwelling,
     /// At rest until an input of the process comes.
@@ -87,6 +89,7 @@ impl fmt::Display for Phase {
             Self::SearchingSeam => f.write_str("searching the seam"),
             Self::Welding => f.write_str("welding"),
             Self::MovingOn => f.write_str("moving on"),
+            Self::Probing => f.write_str("probing"),
             Self::Dwelling => f.write_str("dwelling"),
             Self::WaitingForInput { number, line } => write!(f, "waiting for input {number} (line {line})"),
             Self::Line(line) => write!(f, "line {line}"),

@@ -13,9 +13,9 @@ pub struct Along {
     begins_mm: BTreeMap<u32, f64>,
 }
 
-/// Whether a path is one that works: a feed, or with a beam.
+/// Whether a path is one that works: a feed, but none with a probe, or with a beam.
 pub fn works(path: &PlannedPath) -> bool {
-    path.weld().is_some() || path.motion == Motion::Feed
+    path.weld().is_some() || path.motion == Motion::Feed && path.probe.is_none()
 }
 
 impl Along {

@@ -69,8 +69,10 @@ use thiserror::Error;
 use tracking::Tracking;
 use waits::check_attended;
 
-/// Longest time for the search of all reference marks.
+/// Longest time for the search of all reference marks, where the machine file allows for no longer ways: then that many times what
+/// these take at the speeds of the search, for the slow ones at the marks come besides.
 const HOMING_LIMIT: Duration = Duration::from_secs(240);
+const HOMING_TIMES: f64 = 1.25;
 /// Longest time for the boards to relate their clocks.
 const CLOCK_LIMIT: Duration = Duration::from_secs(30);
 /// Longest time of a controlled stop.
@@ -423,7 +425,9 @@ impl Weld {
                 };
                 session.wait_before(next)?;
             }
-            let phase = if path.weld().is_some() {
+            let phase = if path.probe.is_some() {
+                Phase::Probing
+            } else if path.weld().is_some() {
                 elsewhere = Phase::MovingOn;
                 Phase::RunningIn
             } else {
@@ -473,6 +477,17 @@ impl Weld {
     }
 }
 
+/// Longest time for the search of all reference marks of `machine`: motors of one number of the sequence search together.
+fn homing_limit(machine: &MachineFile) -> Duration {
+    let mut seconds = BTreeMap::new();
+    for motor in machine.motion.motors.iter().flatten() {
+        let longest = seconds.entry(motor.home_sequence).or_insert(0.0);
+        *longest = f64::max(*longest, motor.home.max_travel / motor.home.velocity.abs());
+    }
+    let longest = HOMING_TIMES * seconds.values().sum::<f64>();
+    HOMING_LIMIT.max(Duration::try_from_secs_f64(longest).unwrap_or(Duration::MAX))
+}
+
 /// Brings boards and machine from any state to where paths can be run.
 fn make_ready(session: &mut Session, job: &Job) -> Result<(), JobError> {
     session.phase(Phase::SettingUp);
@@ -480,7 +495,7 @@ fn make_ready(session: &mut Session, job: &Job) -> Result<(), JobError> {
     session.phase(Phase::Homing);
     session.command_all(&Request::Home)?;
     session.refresh()?;
-    session.wait_until("the search for reference marks", HOMING_LIMIT, |s| {
+    session.wait_until("the search for reference marks", homing_limit(job.machine), |s| {
         let tracking = s.tracking.as_ref().map(|tracking| &tracking.status);
         Ok(s.motion.homed
             && s.motion.state == State::Idle

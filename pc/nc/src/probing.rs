@@ -118,7 +118,7 @@ impl Interpreter {
         };
         let Some(probe) = self.setup.probe else {
             return impossible(
-                "this machine has no probe: name the input of one in [program] of the machine file (probe_input)",
+                "this machine has no probe: name the input of one in [program] of the machine file (probe)",
             );
         };
         if self.compensation.is_on() {

@@ -223,3 +223,32 @@ fn the_operator_ends_a_dwell() {
         ended.report.duration_s
     );
 }
+
+#[test]
+fn a_second_job_finds_the_marks_from_where_the_first_one_has_parked() {
+    for name in [
+        "dual-beam-gantry",
+        "pipe-welder",
+        "ac-head",
+        "wire-arc",
+        "stir-gantry",
+    ] {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../machines/{name}.toml"));
+        let machine = MachineFile::read(&file).unwrap();
+        let z = machine.planning.park_axes()[2];
+        let program = interpret(&format!("G53 G0 Z{}\nM2\n", z - 10.0), Options::default()).unwrap();
+        let mut boards = SimulatedBoards::new(name).unwrap();
+        for count in 1..=2 {
+            let mut searched = 0;
+            let mut tapped = TappedBoards {
+                boards: &mut boards,
+                on_sample: |_: &mut dyn Boards, sample: &MotionSample| {
+                    searched += u32::from(sample.state == State::Homing);
+                },
+            };
+            let ended = run(&mut tapped, &job(&machine, &program, None), &mut NoOperator).unwrap();
+            assert!(ended.error.is_none(), "{name}, job {count}: {:?}", ended.error);
+            println!("{name}, job {count}: {:.1} s", f64::from(searched) * 1e-3);
+        }
+    }
+}

@@ -156,6 +156,14 @@ fn print(paths: &[PlannedPath], ran: &Forecast) {
         if let Some(corner) = path.corner_deg {
             outln!("      begins at a corner of {corner:.1}°, where the machine stops");
         }
+        if let Some(probe) = path.probe {
+            let what = if probe.away { "comes free" } else { "touches" };
+            outln!(
+                "      ends where the probe {what} ({} in line {})",
+                probe.code,
+                probe.place.line
+            );
+        }
         for wait in &path.waits_before {
             outln!(
                 "      waits before it {} ({} in line {})",

@@ -105,6 +105,7 @@ texts! {
     SearchingSeam: "searching the seam", "寻找焊缝", "Naht suchen";
     Welding: "welding", "焊接中", "Schweißen";
     MovingOn: "moving on", "移至下一段", "weiter";
+    Probing: "probing", "接触测量", "Antasten";
     Dwelling: "dwelling", "暂停计时", "Verweilen";
     WaitingForInput: "waiting for input {} (line {})", "等待输入 {}（第 {} 行）", "wartet auf Eingang {} (Zeile {})";
     AtLine: "line {}", "第 {} 行", "Zeile {}";
@@ -516,6 +517,7 @@ impl Words {
             Phase::SearchingSeam => Text::SearchingSeam,
             Phase::Welding => Text::Welding,
             Phase::MovingOn => Text::MovingOn,
+            Phase::Probing => Text::Probing,
             Phase::Dwelling => Text::Dwelling,
             Phase::Parking => Text::Parking,
             Phase::Jogging => Text::Jogging,
