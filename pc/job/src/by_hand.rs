@@ -60,19 +60,23 @@ impl Weld {
         }
     }
 
-    /// Carries out a block, after the checks of a program. Where G10 puts coordinate systems, they stay for the blocks after it.
+    /// Carries out a block, after the checks of a program. Where G10 puts coordinate systems, and what a probe finds, stay for the
+    /// blocks after it.
     fn block(&mut self, session: &mut Session, job: &Job, text: &str) -> Result<(), JobError> {
         let options = Options {
             setup: Arc::new(self.planner.setup(&session.motion.reference)),
             ..Options::default()
         };
         let program = interpret(&format!("{text}\nM2\n"), options);
-        let program = program.map_err(|error| JobError::Block(error.to_string()))?;
+        let mut program = program.map_err(|error| JobError::Block(error.to_string()))?;
         let before = *self.planner.systems();
         if !program.paths.is_empty() || *program.systems == before {
-            self.program(session, job, &program)?;
+            program = self.program(session, job, &program)?;
         }
         self.planner.set_systems(*program.systems);
+        if let Some(found) = program.found() {
+            self.planner.set_found(found);
+        }
         let are = before
             .iter()
             .zip(program.systems.iter())

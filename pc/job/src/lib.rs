@@ -387,7 +387,7 @@ impl Weld {
     fn all(&mut self, session: &mut Session, job: &Job) -> Result<(), JobError> {
         make_ready(session, job)?;
         match job.work {
-            Work::Program(program) => self.program(session, job, program)?,
+            Work::Program(program) => drop(self.program(session, job, program)?),
             Work::Pictures(run) => self.taught.pictures = self.take_pictures(session, job, run)?,
             Work::Mark(run) => self.taught.marks = Some(self.mark(session, job, run)?),
             Work::Teach => drop(self.teach(session, job)?),
@@ -398,7 +398,7 @@ impl Weld {
             Work::TeachAndMake => {
                 let part = self.teach(session, job)?;
                 let program = self.plan_taught(job, &part)?;
-                self.program(session, job, &program)?;
+                drop(self.program(session, job, &program)?);
             }
         }
         session.wait_before(Next::Parking)?;
@@ -408,8 +408,8 @@ impl Weld {
         Ok(())
     }
 
-    /// Runs a program from where the axes stand.
-    fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<(), JobError> {
+    /// Runs a program from where the axes stand; the program as it was with all that its probe has found.
+    fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<Program, JobError> {
         let mut elsewhere = Phase::Approaching;
         let mut probing = Probing::new(program, session.motion.reference);
         let mut left = probing.plan(job, &self.planner)?;
@@ -441,7 +441,7 @@ impl Weld {
                 check_attended(session, left.as_slice())?;
             }
         }
-        Ok(())
+        Ok(probing.program())
     }
 
     /// Loads and runs one path; the machine stands afterwards, on an error too.

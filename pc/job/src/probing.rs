@@ -8,6 +8,7 @@ use host_link::events::Event;
 use nc::{NcError, Probe, Probed, Program};
 use shared::io::AXES;
 use shared::protocol::{Refusal, Request, Role};
+use std::borrow::Cow;
 use std::vec::IntoIter;
 use thiserror::Error;
 
@@ -51,7 +52,8 @@ pub(super) fn begin(session: &mut Session, path: &PlannedPath) -> Result<(), Job
 
 /// Paths of a program, and what its motions with the probe have found.
 pub(super) struct Probing<'a> {
-    program: &'a Program,
+    /// As it was read last.
+    program: Cow<'a, Program>,
     /// Where the axes stood when it began (mm, degrees).
     from: [f64; AXES],
     found: Vec<Probed>,
@@ -60,7 +62,7 @@ pub(super) struct Probing<'a> {
 impl<'a> Probing<'a> {
     pub fn new(program: &'a Program, from: [f64; AXES]) -> Self {
         Self {
-            program,
+            program: Cow::Borrowed(program),
             from,
             found: Vec::new(),
         }
@@ -68,20 +70,14 @@ impl<'a> Probing<'a> {
 
     /// All paths that are left.
     pub fn plan(&self, job: &Job, planner: &Planner) -> Result<IntoIter<PlannedPath>, JobError> {
-        let again;
-        let mut program = self.program;
-        if !self.found.is_empty() {
-            again = program.probed(&self.found).map_err(ProbeError::After)?;
-            program = &again;
-        }
-        let mut left = job.plan(program, planner, &self.from)?.into_iter();
+        let mut left = job.plan(&self.program, planner, &self.from)?.into_iter();
         for _ in &self.found {
             left.find(|path| path.probe.is_some());
         }
         Ok(left)
     }
 
-    /// Takes what the last motion, that of `probe`, has found.
+    /// Takes what the last motion, that of `probe`, has found: what follows it is read anew.
     pub fn take(&mut self, weld: &Weld, session: &mut Session, probe: Probe) -> Result<(), JobError> {
         let tip = |axes: &[f64; AXES]| {
             let tip = weld.planner.tip(axes);
@@ -104,6 +100,12 @@ impl<'a> Probing<'a> {
         };
         session.control.publish(Event::Message(text));
         self.found.push(Probed { met, stands });
+        self.program = Cow::Owned(self.program.probed(&self.found).map_err(ProbeError::After)?);
         Ok(())
+    }
+
+    /// The program as it was read last.
+    pub fn program(self) -> Program {
+        self.program.into_owned()
     }
 }

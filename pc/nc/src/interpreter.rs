@@ -13,7 +13,7 @@ use super::nurbs::{OpenNurbs, Progress};
 use super::offsets::{Coordinates, Offsets};
 use super::outputs::{Pending, Spindle, coolant, dwell, output};
 use super::parameters::Parameters;
-use super::probing::Probed;
+use super::probing::{Found, Probed};
 use super::program::{
     AXIS_WORDS, EXTENSION_WORDS, FeedRate, Motion, Notice, Program, ProgramAction, ProgramPath,
 };
@@ -39,6 +39,7 @@ pub(super) struct Interpreter {
     /// What motions with the probe have found, and how many were read.
     pub(super) probed: Arc<[Probed]>,
     pub(super) probes: usize,
+    pub(super) found: Option<Found>,
     pub(super) modal: Modal,
     pub(super) offsets: Offsets,
     pub(super) parameters: Parameters,
@@ -110,9 +111,10 @@ impl Interpreter {
             optional_stop: options.optional_stop,
             probed: options.probed.clone(),
             probes: 0,
+            found: setup.found,
             modal: Modal::new(setup),
             offsets: Offsets::new(&setup.systems),
-            parameters: Parameters::default(),
+            parameters: Parameters::new(setup.found),
             nurbs: None,
             at: setup.start,
             known: [false; AXES],

@@ -61,7 +61,7 @@ pub use error::{NcError, Problem, SourcePosition};
 pub use explain::{Told, explain, explain_file};
 pub use laser::Laser;
 pub use offsets::{CoordinateSystem, SYSTEMS};
-pub use probing::{Probe, ProbeInput, Probed};
+pub use probing::{Found, Probe, ProbeInput, Probed};
 pub use program::{
     ArcForm, ArcWay, Blend, ControlPoint, FeedRate, Motion, Move, Notice, NurbsWay, PathControl, Plane,
     Program, ProgramAction, ProgramEvent, ProgramPath, Target, Way, Words,

@@ -1,6 +1,7 @@
 //! Parameters of programs: `#1`, `#<local>` and `#<_global>`, and `R1` of Siemens controllers.
 
 use super::error::Problem;
+use super::probing::Found;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -214,6 +215,21 @@ impl Default for Parameters {
 }
 
 impl Parameters {
+    /// Before anything is set; with what a probe has found before.
+    pub(super) fn new(found: Option<Found>) -> Self {
+        let mut parameters = Self::default();
+        if let Some(found) = found {
+            parameters.found(found);
+        }
+        parameters
+    }
+
+    /// Takes what a probe has found.
+    pub(super) fn found(&mut self, found: Found) {
+        self.changes += 1;
+        self.numbered.extend(found.parameters());
+    }
+
     /// A subroutine begins, with its arguments.
     pub(super) fn enter(&mut self, arguments: &[f64]) {
         let own = (1..=OWN).zip(arguments.iter().copied()).collect();

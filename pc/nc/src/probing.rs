@@ -1,14 +1,13 @@
 //! Motions that end where the probe touches, or where it no longer does: G38.2 to G38.5 and G31.
 //!
 //! A program is read before the machine moves, and nobody knows then what the probe will meet: its motions are taken to go to
-//! their ends, where those of G38.2 and G38.4 meet what they must. When the machine has been there, the program is read again from its beginning with what was found
-//! ([`Program::probed`]), and goes on behind it.
+//! their ends, where those of G38.2 and G38.4 meet what they must. When the machine has been there, the program is read again
+//! from its beginning with what was found ([`Program::probed`]), and goes on behind it.
 
 use super::codes::Code;
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::offsets::Coordinates;
-use super::parameters::Parameter;
 use super::program::{FeedRate, Motion, Program, Way, Words};
 use super::reading::{KEPT, read};
 use super::setup::Options;
@@ -58,17 +57,28 @@ pub struct Probed {
     pub stands: [f64; AXES],
 }
 
-/// How a program is read again.
-#[derive(Clone)]
-pub(super) struct Again {
-    source: Source,
-    options: Options,
+/// What `#5061` and those after it are: where the last probe touched, in the units and the coordinates of the program, and 1 in
+/// `#5070` if it did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    at: [f64; AXES],
+    touched: bool,
 }
 
-impl Again {
-    pub fn new(source: Source, options: Options) -> Self {
-        Self { source, options }
+impl Found {
+    /// The parameters, with their numbers.
+    pub(super) fn parameters(self) -> impl Iterator<Item = (u32, f64)> {
+        let touched = f64::from(u8::from(self.touched));
+        (FOUND..).zip(self.at).chain([(SUCCESS, touched)])
     }
+}
+
+/// How a program is read again, and what the last motion of this reading has found.
+#[derive(Clone)]
+pub(super) struct Again {
+    pub source: Source,
+    pub options: Options,
+    pub found: Option<Found>,
 }
 
 impl fmt::Debug for Again {
@@ -85,6 +95,11 @@ impl PartialEq for Again {
 }
 
 impl Program {
+    /// What its last motion with the probe has found; `None` of a program without any.
+    pub fn found(&self) -> Option<Found> {
+        self.again.as_ref()?.found
+    }
+
     /// The same program after its first motions with the probe, of which is known what they `found`.
     ///
     /// # Errors
@@ -145,7 +160,10 @@ impl Interpreter {
         if distance(&from, &self.at) < SAME {
             return match must {
                 true => impossible("it must lead elsewhere than where the tip is"),
-                false => self.note_found(None).map_err(|problem| problem.at(place)),
+                false => {
+                    self.note_found(None);
+                    Ok(())
+                }
             };
         }
         // It is begun at its beginning: what follows depends on what is found.
@@ -182,7 +200,8 @@ impl Interpreter {
                 place,
             });
         }
-        self.note_found(met).map_err(|problem| problem.at(place))
+        self.note_found(met);
+        Ok(())
     }
 
     /// Words of X Y Z where the tip is.
@@ -194,14 +213,15 @@ impl Interpreter {
     }
 
     /// `#5061` to `#5066`: where the probe touched, or where its motion has ended. `#5070`: whether it did.
-    fn note_found(&mut self, met: Option<Coordinates>) -> Result<(), Problem> {
-        let there = self.offsets.to_programmed(&met.unwrap_or(self.at));
-        for (number, (axis, value)) in (FOUND..).zip(there.into_iter().enumerate()) {
-            let unit = if axis < 3 { self.modal.unit() } else { 1.0 };
-            self.parameters.set(&Parameter::Numbered(number), value / unit)?;
-        }
-        let success = f64::from(u8::from(met.is_some()));
-        self.parameters.set(&Parameter::Numbered(SUCCESS), success)
+    fn note_found(&mut self, met: Option<Coordinates>) {
+        let mut at = self.offsets.to_programmed(&met.unwrap_or(self.at));
+        at[..3].iter_mut().for_each(|value| *value /= self.modal.unit());
+        let found = Found {
+            at,
+            touched: met.is_some(),
+        };
+        self.parameters.found(found);
+        self.found = Some(found);
     }
 }
 

@@ -31,7 +31,7 @@ pub struct Program {
     /// What a person should know of how it was read, and what it says itself (MSG, DEBUG, PRINT).
     pub notices: Vec<Notice>,
     /// How it is read again, if it has motions with the probe.
-    pub(super) again: Option<Again>,
+    pub(super) again: Option<Box<Again>>,
 }
 
 impl Program {

@@ -328,7 +328,13 @@ impl Reader {
             .levels
             .first()
             .filter(|_| self.interpreter.probes > 0);
-        let again = main.map(|main| Again::new(main.source.clone(), self.options));
+        let again = main.map(|main| {
+            Box::new(Again {
+                source: main.source.clone(),
+                options: self.options,
+                found: self.interpreter.found,
+            })
+        });
         Program {
             again,
             ..self.interpreter.end()

@@ -2,7 +2,7 @@
 
 use super::laser::Laser;
 use super::offsets::{CoordinateSystem, SYSTEMS};
-use super::probing::{ProbeInput, Probed};
+use super::probing::{Found, ProbeInput, Probed};
 use super::program::{PathControl, Plane};
 use shared::io::AXES;
 use std::collections::{BTreeMap, BTreeSet};
@@ -57,6 +57,8 @@ pub struct Setup {
     pub laser: Option<Laser>,
     /// The probe of G38.
     pub probe: Option<ProbeInput>,
+    /// What a probe has found before.
+    pub found: Option<Found>,
     /// Axis words before any motion code are those of a G0.
     pub rapid_at_start: bool,
     /// R of cycles that have none is the level where the first of them begins.
@@ -87,6 +89,7 @@ impl Default for Setup {
             spindle_rpm: None,
             laser: None,
             probe: None,
+            found: None,
             rapid_at_start: false,
             r_at_initial_level: false,
             feed_mm_min: None,

@@ -90,8 +90,7 @@ fn touch(config: &TouchConfig) -> Result<(), Mistake> {
     )?;
     for body in &config.bodies {
         for (from, to) in body.from.into_iter().zip(body.to) {
-            // NaN, too.
-            if !(from < to) {
+            if from >= to || from.is_nan() || to.is_nan() {
                 return Err((
                     "touch.bodies".to_owned(),
                     format!("has a body from {from} to {to}: the first must be the lower one"),

@@ -3,13 +3,14 @@
 //! `M` is 1, or 2 for the motors of a gantry, which must not turn the beam while they search: they get one
 //! velocity, and every phase ends when the last of them has done its part. The phases:
 //!
+//! 0. *recall*: where all marks were seen before and lie behind, back to where they were, and no further;
 //! 1. *seek*: at the search velocity until every mark was seen; turns round once, at a limit switch;
 //! 2. *return*: back until every grating is well before its mark, seen in the direction of the search;
 //! 3. *approach*: over the marks again at a quarter of the velocity. These are the readings that count: they
 //!    were all taken in one direction and slowly, whichever way the seek went;
 //! 4. *brake* to standstill.
 //!
-//! The largest travel counts the ways there and back together, and at least what was commanded: a search whose
+//! The largest travel counts the ways there and back together, but those of a recall in vain, and at least what was commanded: a search whose
 //! grating stands still ends too.
 
 use super::HomeConfig;
@@ -46,6 +47,7 @@ pub struct SearchInput {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
+    Recall,
     Seek,
     Return,
     Approach,
@@ -56,6 +58,8 @@ enum Phase {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchState<const M: usize> {
     phase: Phase,
+    /// Travel after which a recall has not found them.
+    recalled: f64,
     /// Seeking against the direction of the configuration.
     turned: bool,
     velocity: f64,
@@ -118,16 +122,26 @@ impl<const M: usize> ReferenceSearch<M> {
         Ok(search)
     }
 
-    /// A search that begins at rest, the first grating at `counts`.
-    pub fn start(&self, counts: i64) -> SearchState<M> {
+    /// A search that begins at rest, the gratings at `counts`, whose marks were `seen` before, since they count.
+    pub fn start(&self, counts: [i64; M], seen: [Option<i64>; M]) -> SearchState<M> {
+        let behind = |i: usize| Some(-self.ahead(i, seen[i]?, counts[i]));
+        let recalls = (0..M).all(|i| behind(i).is_some_and(|behind| behind >= 0.0));
+        let farthest = (0..M).filter_map(behind).fold(0.0, libm::fmax);
         SearchState {
-            phase: Phase::Seek,
+            phase: if recalls { Phase::Recall } else { Phase::Seek },
+            recalled: farthest + self.run_up,
             turned: false,
             velocity: 0.0,
             travel: 0.0,
-            last_counts: counts,
+            last_counts: counts[0],
             marks: [None; M],
         }
+    }
+
+    /// How far the mark of grating `i` is ahead in the direction of the search (mm or rad).
+    fn ahead(&self, i: usize, mark: i64, counts: i64) -> f64 {
+        let ahead = (mark - counts) as f64 / self.counts_per_unit[i];
+        libm::copysign(ahead, ahead * self.velocity)
     }
 
     /// One tick.
@@ -139,17 +153,23 @@ impl<const M: usize> ReferenceSearch<M> {
         if state.travel > self.max_travel {
             return self.fail(state);
         }
-        if matches!(state.phase, Phase::Seek | Phase::Approach) {
+        if matches!(state.phase, Phase::Recall | Phase::Seek | Phase::Approach) {
             for (mark, input) in state.marks.iter_mut().zip(inputs) {
                 *mark = mark.or(input.mark);
             }
         }
         let all_seen = state.marks.iter().all(Option::is_some);
         let target = match state.phase {
-            Phase::Seek if all_seen => {
+            Phase::Recall | Phase::Seek if all_seen => {
                 state.phase = Phase::Return;
                 -self.velocity
             }
+            Phase::Recall if state.travel > state.recalled || self.at_limit(-self.velocity, inputs) => {
+                state.phase = Phase::Seek;
+                state.travel = 0.0;
+                self.velocity
+            }
+            Phase::Recall => -self.velocity,
             Phase::Seek => {
                 let velocity = if state.turned {
                     -self.velocity
@@ -211,12 +231,8 @@ impl<const M: usize> ReferenceSearch<M> {
 
     /// Whether every grating stands at least the run-up before its mark, seen in the search direction.
     fn before_marks(&self, state: &SearchState<M>, inputs: &[SearchInput; M]) -> bool {
-        (0..M).all(|i| {
-            state.marks[i].is_some_and(|mark| {
-                let ahead = (mark - inputs[i].counts) as f64 / self.counts_per_unit[i];
-                libm::copysign(ahead, ahead * self.velocity) >= self.run_up
-            })
-        })
+        (0..M)
+            .all(|i| state.marks[i].is_some_and(|mark| self.ahead(i, mark, inputs[i].counts) >= self.run_up))
     }
 
     fn offsets(&self, state: &SearchState<M>) -> [f64; M] {
@@ -257,12 +273,20 @@ mod tests {
         position: f64,
         /// Largest speed at which a mark was passed last.
         passed_at: f64,
+        /// Counts at the marks, as they were seen before.
+        seen: [Option<i64>; M],
+        /// Lowest and highest position of the run.
+        farthest: [f64; 2],
     }
 
     impl<const M: usize> Bench<M> {
         fn advance(&mut self, velocity: f64) -> [SearchInput; M] {
             let last = self.position;
             self.position += velocity * PERIOD;
+            self.farthest = [
+                self.farthest[0].min(self.position),
+                self.farthest[1].max(self.position),
+            ];
             core::array::from_fn(|i| {
                 let mark = self.marks[i];
                 let crossed = (last - mark) * (self.position - mark) < 0.0;
@@ -282,7 +306,8 @@ mod tests {
         /// Runs to the end; checks the ramp on the way.
         fn run(&mut self, search: &ReferenceSearch<M>) -> SearchProgress<M> {
             let mut inputs = self.advance(0.0);
-            let mut state = search.start(inputs[0].counts);
+            let mut state = search.start(core::array::from_fn(|i| inputs[i].counts), self.seen);
+            self.farthest = [self.position; 2];
             for _ in 0..100_000 {
                 let last = state.velocity();
                 let progress = search.step(&mut state, &inputs);
@@ -308,6 +333,8 @@ mod tests {
             switches: [-30.0, 30.0],
             position: 0.0,
             passed_at: 0.0,
+            seen: [None; 1],
+            farthest: [0.0; 2],
         };
         (bench.run(&search), bench)
     }
@@ -353,6 +380,8 @@ mod tests {
             switches: [-30.0, 30.0],
             position: 0.0,
             passed_at: 0.0,
+            seen: [None; 1],
+            farthest: [0.0; 2],
         };
         assert_eq!(bench.run(&search), SearchProgress::Failed { grating: 0 });
         assert!(bench.position > 9.9 && bench.position < 10.1);
@@ -361,7 +390,7 @@ mod tests {
     #[test]
     fn a_grating_that_stands_still_fails_after_the_largest_travel_that_was_commanded() {
         let search = ReferenceSearch::build(["Y"], [&config(20.0)], [1000.0], 1.0, 200.0, PERIOD).unwrap();
-        let mut state = search.start(77);
+        let mut state = search.start([77], [None]);
         let dead = [SearchInput {
             counts: 77,
             ..SearchInput::default()
@@ -371,6 +400,50 @@ mod tests {
             .count();
         // 100 mm at 20 mm/s, after the ramp.
         assert!((5000..5100).contains(&ticks), "{ticks}");
+    }
+
+    /// From behind the mark the search goes straight back to where it was seen, no further than that, and takes its reading as
+    /// always; where the mark is not there any more, it searches as if nothing were known.
+    #[test]
+    fn a_mark_that_was_seen_is_gone_back_to() {
+        for (velocity, scale) in [(20.0, 1000.0), (-20.0, 1000.0), (20.0, -1000.0)] {
+            let config = config(velocity);
+            let search = ReferenceSearch::build(["Y"], [&config], [scale], 1.0, 200.0, PERIOD).unwrap();
+            let sign = f64::signum(velocity);
+            let at = |mark: f64, seen: f64| Bench {
+                scale: [scale],
+                marks: [sign * mark],
+                switches: [-30.0, 30.0],
+                position: 0.0,
+                passed_at: 0.0,
+                seen: [Some((sign * seen * scale) as i64)],
+                farthest: [0.0; 2],
+            };
+            let reach = |bench: &Bench<1>| bench.farthest.map(|far| far * sign);
+            let mut bench = at(-6.0, -6.0);
+            assert!(matches!(bench.run(&search), SearchProgress::Done { .. }));
+            assert!((bench.passed_at - velocity * APPROACH).abs() < 1e-9);
+            let [a, b] = reach(&bench);
+            assert!(f64::max(a, b) < 0.1 && f64::min(a, b) > -13.0, "{a} {b}");
+            // Ahead as before.
+            let mut bench = at(6.0, 6.0);
+            assert!(matches!(bench.run(&search), SearchProgress::Done { .. }));
+            let [a, b] = reach(&bench);
+            assert!(f64::min(a, b) > -0.1 && f64::max(a, b) < 13.0, "{a} {b}");
+            // Where it stands.
+            let mut bench = at(-0.001, 0.0);
+            assert!(matches!(bench.run(&search), SearchProgress::Done { .. }));
+            // Not there: it is ahead, or behind where it was.
+            for mark in [15.0, -15.0] {
+                let mut bench = at(mark, -6.0);
+                assert!(
+                    matches!(bench.run(&search), SearchProgress::Done { .. }),
+                    "{mark}"
+                );
+                let [a, b] = reach(&bench);
+                assert!(mark < 0.0 || f64::min(a, b) > -6.0 - 4.0, "{a} {b}");
+            }
+        }
     }
 
     /// Two gratings on one beam: both are referred to their own mark by one motion.
@@ -392,6 +465,8 @@ mod tests {
             switches: [-30.0, 30.0],
             position: 0.0,
             passed_at: 0.0,
+            seen: [None; 2],
+            farthest: [0.0; 2],
         };
         let SearchProgress::Done { offset } = bench.run(&search) else {
             panic!("not found");

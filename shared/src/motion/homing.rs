@@ -136,6 +136,7 @@ enum Stage {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Homing {
     plan: HomingPlan,
+    seen: [Option<i64>; MOTORS],
     stage: Stage,
     gantry: Option<SearchState<2>>,
     single: [Option<SearchState<1>>; MOTORS],
@@ -152,11 +153,12 @@ pub struct HomingStep {
 }
 
 impl Homing {
-    /// Starts a search.
-    pub fn start(plan: HomingPlan) -> Self {
+    /// Starts a search; marks were `seen` at these counts before.
+    pub fn start(plan: HomingPlan, seen: [Option<i64>; MOTORS]) -> Self {
         Self {
             found: core::array::from_fn(|motor| !plan.fitted(motor)),
             plan,
+            seen,
             stage: Stage::Searching,
             gantry: None,
             single: [None; MOTORS],
@@ -259,7 +261,8 @@ impl Homing {
         let Some(search) = &self.plan.single[motor] else {
             return Ok(());
         };
-        let state = self.single[motor].get_or_insert_with(|| search.start(report.counts[motor]));
+        let seen = self.seen[motor];
+        let state = self.single[motor].get_or_insert_with(|| search.start([report.counts[motor]], [seen]));
         let progress = search.step(state, &[input(report, motor)]);
         follow(reference, motor, state.velocity());
         match progress {
@@ -283,7 +286,10 @@ impl Homing {
         let Some(GantryPlan { search, .. }) = &self.plan.gantry else {
             return Ok(());
         };
-        let state = self.gantry.get_or_insert_with(|| search.start(report.counts[X1]));
+        let seen = [X1, X2].map(|motor| self.seen[motor]);
+        let state = self
+            .gantry
+            .get_or_insert_with(|| search.start([X1, X2].map(|motor| report.counts[motor]), seen));
         let progress = search.step(state, &[input(report, X1), input(report, X2)]);
         for motor in [X1, X2] {
             follow(reference, motor, state.velocity());

@@ -6,11 +6,20 @@ use host_link::spool::Spooling;
 use host_link::{ByHand, Jog, JogWay};
 use shared::io::{AXES, AXIS_NAMES};
 use shared::protocol::HOLD_TO_RUN_MS;
+use system_tests::plate;
 use system_tests::{Deed, Hands, Rest, Then};
 
 /// All places where the machine waited.
 fn operated<'a>(machine: &MachineFile, deeds: impl IntoIterator<Item = Deed<'a>>) -> Vec<Rest> {
-    let mut boards = SimulatedBoards::new(machine.motion.kinematics.name()).unwrap();
+    let boards = SimulatedBoards::new(machine.motion.kinematics.name()).unwrap();
+    operated_on(boards, machine, deeds)
+}
+
+fn operated_on<'a>(
+    mut boards: SimulatedBoards,
+    machine: &MachineFile,
+    deeds: impl IntoIterator<Item = Deed<'a>>,
+) -> Vec<Rest> {
     let program = interpret("M2", Options::default()).unwrap();
     let job = Job {
         work: Work::ByHand,
@@ -204,4 +213,41 @@ fn blocks_go_by_the_work_offsets_and_one_that_sets_them_holds_for_those_after_it
         "{told:?}"
     );
     assert!(!told[5].is_empty());
+}
+
+#[test]
+fn a_probe_by_hand_leaves_what_it_found_to_the_blocks_after_it() {
+    let block = |text: &str| Deed::Asks(ByHand::Block(text.to_owned()));
+    let plant = plant_file::PlantFile::parse("plate", &plate::plant()).unwrap();
+    let rests = operated_on(
+        SimulatedBoards::wired_to(&plant),
+        &plate::machine(),
+        [
+            block("G0 X700 Y550 Z-60 A0 C0"),
+            block("G38.2 Z-90 F600"),
+            block("G38.2 Z-110 F300"),
+            block("G10 L2 P1 Z#5063"),
+            block("G0 Z12"),
+            block("G0 X[#5061 + 1000 * #5070]"),
+        ],
+    );
+    let told: Vec<_> = rests.iter().map(|rest| rest.told.join("; ")).collect();
+    // What has met nothing is told, and the machine stays in the operator's hands.
+    assert!(
+        told[2].contains("at the end of the motion the probe has touched nothing"),
+        "{told:?}"
+    );
+    assert!(
+        told[3].contains("the probe touched with the tip at X7") && told[3].contains("Z-98.2"),
+        "{told:?}"
+    );
+    assert_eq!(told[4], "set for the blocks by hand that follow: G54");
+    let planner = Planner::build(&plate::machine()).unwrap();
+    let tip = |index: usize| planner.tip(&rests[index].motion.reference).position_mm;
+    assert!(
+        (tip(5)[2] - (plate::CORNER[2] - 300.0) - 12.0).abs() < 0.005,
+        "{:?}",
+        tip(5)
+    );
+    assert!((tip(6)[0] - 1700.0).abs() < 0.005, "{:?}", tip(6));
 }

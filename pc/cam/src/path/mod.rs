@@ -91,6 +91,8 @@ pub struct Planner {
     tools: BTreeMap<u32, nc::Tool>,
     /// Where G54 to G59.3 are when a program begins.
     systems: [CoordinateSystem; nc::SYSTEMS],
+    /// What a probe has found before.
+    found: Option<nc::Found>,
 }
 
 impl Planner {
@@ -127,6 +129,7 @@ impl Planner {
                     rotation: rotation_deg,
                 }
             }),
+            found: None,
         })
     }
 

@@ -5,8 +5,8 @@ use super::tip_of_machine::TipOfMachine;
 use super::{PathError, Planner};
 use config::machine::{ArcPlane, LengthUnit, PathMode, ProbeConfig, ToolConfig};
 use nc::{
-    Blend, CoordinateSystem, Laser, PathControl, Plane, ProbeInput, Program, ProgramAction, SYSTEMS, Setup,
-    TipAndAxes,
+    Blend, CoordinateSystem, Found, Laser, PathControl, Plane, ProbeInput, Program, ProgramAction, SYSTEMS,
+    Setup, TipAndAxes,
 };
 use shared::io::AXES;
 use std::collections::BTreeSet;
@@ -57,6 +57,7 @@ impl Planner {
             spindle_rpm: program.spindle_rpm,
             laser: self.laser(),
             probe: self.probe(),
+            found: self.found,
             rapid_at_start: program.motion.is_some(),
             r_at_initial_level: program.r_at_initial_level,
             feed_mm_min: program.feed_mm_min,
@@ -73,6 +74,11 @@ impl Planner {
     /// Has programs begin with G54 to G59.3 there.
     pub fn set_systems(&mut self, systems: [CoordinateSystem; SYSTEMS]) {
         self.systems = systems;
+    }
+
+    /// Has programs begin with what a probe has found.
+    pub fn set_found(&mut self, found: Found) {
+        self.found = Some(found);
     }
 
     /// The beam that M3, M4, M5 and S switch, where the machine file says one.

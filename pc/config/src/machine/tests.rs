@@ -511,11 +511,12 @@ fn programs_begin_with_the_modes_that_the_file_says() {
 #[test]
 fn a_probe_is_an_input_that_answers_nothing() {
     let with = |more: &str, probe: &str| pipe_with(&format!("{more}[program]\nprobe = {probe}")).0;
-    let touch = "[inputs.touch]\nnumber = 2\n";
+    let touch = "[inputs.touch]\nnumber = 4\n";
     let machine = MachineFile::parse("m.toml", &with(touch, "{ input = \"touch\", opens = true }")).unwrap();
     let (input, opens) = ("touch".to_owned(), true);
     assert_eq!(machine.program.probe, Some(ProbeConfig { input, opens }));
-    let answers = "[outputs.gas]\nnumber = 1\n[inputs.touch]\nnumber = 2\nanswers = \"gas\"\nwithin_ms = 5\n";
+    let answers =
+        "[outputs.spare]\nnumber = 8\n[inputs.touch]\nnumber = 4\nanswers = \"spare\"\nwithin_ms = 5\n";
     for more in ["", answers] {
         let error = error_of(&with(more, "{ input = \"touch\" }"));
         let said = "program.probe names \"touch\", but needs an [inputs.touch] that answers nothing";

@@ -169,7 +169,7 @@ impl MotionController {
     fn start_homing(&mut self) -> Result<(), Refusal> {
         let machine = self.machine.as_ref().ok_or(Refusal::NotConfigured)?;
         let state = self.allowed(Event::Home)?;
-        self.homing = Some(Homing::start(machine.homing.clone()));
+        self.homing = Some(Homing::start(machine.homing.clone(), self.inputs.marks));
         self.homed = false;
         self.path.forget();
         self.state = state;

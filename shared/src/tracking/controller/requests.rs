@@ -81,7 +81,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             .slides
             .iter()
             .zip(self.feedback.counts)
-            .map(|(slide, counts)| slide.search.start(counts))
+            .map(|(slide, counts)| slide.search.start([counts], [None]))
             .collect();
         for slide in &mut self.slides {
             slide.offset = None;
