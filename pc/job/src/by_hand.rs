@@ -6,6 +6,7 @@
 
 use crate::feeding::Feeding;
 use crate::leading::{Straight, straight};
+use crate::probing::Guard;
 use crate::session::{Session, on_path};
 use crate::{Job, JobError, Weld};
 use cam::path::{JogError, PlannedPath, TipMove};
@@ -161,8 +162,10 @@ fn hold_to_run(session: &mut Session, mut feeding: Feeding, jog: &Jog) -> Result
     session.refresh()?;
     let begun = session.tick();
     let mut held = Held::new(session);
+    let mut guard = Guard::new(session, false);
     session.go_on_until(|session| {
         feeding.go_on(session)?;
+        guard.watch(session)?;
         match held.turn(session, jog) {
             Some(true) => session.ask(&Request::HoldToRun)?,
             Some(false) => session.ask(&Request::Stop)?,

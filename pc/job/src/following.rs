@@ -1,9 +1,10 @@
 //! A path while the motion board runs it: the rest of it is given, and the machine is watched.
 
 use crate::feeding::{EndedBlock, Feeding};
+use crate::probing::{self, Guard};
 use crate::run_in::RunIn;
 use crate::session::{Session, on_path};
-use crate::{JobError, probing, recentring};
+use crate::{JobError, recentring};
 use cam::path::PlannedPath;
 use host_link::Command;
 use host_link::events::{Event, Next, Phase, Question};
@@ -32,6 +33,7 @@ pub(super) fn follow(
     session.refresh()?;
     let begun = session.tick();
     let mut welding = false;
+    let mut guard = Guard::new(session, path.probe.is_some());
     let mut advance = Advance::new(&session.motion);
     // Line of the next block, while the machine waits before that.
     let mut waits: Option<u32> = None;
@@ -41,6 +43,7 @@ pub(super) fn follow(
     session.go_on_until(|s| {
         feeding.go_on(s)?;
         advance.watch(&s.motion)?;
+        guard.watch(s)?;
         recentring::watch(s, id)?;
         let mut stands = false;
         let here = s.record.motion().back().filter(|here| here.tick > begun).copied();

@@ -356,6 +356,7 @@ pub fn run(boards: &mut dyn Boards, job: &Job, control: &mut Control) -> Result<
         ..job.spooling.clone()
     };
     let mut session = Session::begin(boards, job.machine, around, spooling, control)?;
+    session.probe = planner.probe();
     let mut weld = Weld {
         planner,
         paths: BTreeMap::new(),

@@ -1,12 +1,13 @@
 //! Motions of a program with the probe: what the machine finds, and how the program goes on with it.
 
 use crate::session::Session;
+use crate::waits::newer;
 use crate::{Job, JobError, Weld};
 use cam::path::{PlannedPath, Planner};
 use host_link::boards::LinkError;
 use host_link::events::Event;
-use nc::{NcError, Probe, Probed, Program};
-use shared::io::AXES;
+use nc::{NcError, Probe, ProbeInput, Probed, Program};
+use shared::io::{AXES, Bits};
 use shared::protocol::{Refusal, Request, Role};
 use std::borrow::Cow;
 use std::vec::IntoIter;
@@ -29,6 +30,12 @@ pub enum ProbeError {
         if .0.away { "G38.5" } else { "G38.3" }
     )]
     Nothing(Probe),
+    /// Another motion has run into something: that of this line, or a jog.
+    #[error(
+        "{}the probe touches in a motion that is none of G38, and the machine stops: look at what it touches, and lead it away",
+        .0.map(|line| format!("line {line}: ")).unwrap_or_default()
+    )]
+    Hit(Option<u32>),
     /// The program cannot be run with what was found.
     #[error("with what the probe found, the program does not go on: {0}")]
     After(NcError),
@@ -48,6 +55,46 @@ pub(super) fn begin(session: &mut Session, path: &PlannedPath) -> Result<(), Job
         } => ProbeError::Already(probe).into(),
         error => error.into(),
     })
+}
+
+/// A probe that was free for so many samples, of a millisecond each, is no contact that still chatters.
+const FREE: u32 = 20;
+
+/// Looks for a probe that comes to touch in a motion that is not for that.
+pub(super) struct Guard {
+    probe: Option<ProbeInput>,
+    /// The newest sample that was looked at.
+    tick: u32,
+    /// For how many samples it has been free.
+    free: u32,
+}
+
+impl Guard {
+    /// For a motion that begins now, by `probe` or not.
+    pub fn new(session: &Session, by_probe: bool) -> Self {
+        Self {
+            probe: session.probe.filter(|_| !by_probe),
+            tick: session.tick(),
+            free: 0,
+        }
+    }
+
+    /// Looks at what the motion board has told since.
+    pub fn watch(&mut self, session: &Session) -> Result<(), ProbeError> {
+        let Some(ProbeInput { input, touching }) = self.probe else {
+            return Ok(());
+        };
+        for sample in newer(session.record.motion(), self.tick) {
+            self.tick = sample.tick;
+            if Bits(sample.inputs).get(input.into()) != touching {
+                self.free += 1;
+            } else if std::mem::take(&mut self.free) >= FREE {
+                let line = session.motion.line;
+                return Err(ProbeError::Hit((line > 0).then_some(line)));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Paths of a program, and what its motions with the probe have found.

@@ -12,6 +12,7 @@ use host_link::events::{Event, Phase, Question};
 use host_link::geometry::MachineGeometry;
 use host_link::record::Record;
 use host_link::spool::Spooling;
+use nc::ProbeInput;
 use shared::protocol::{Datagram, MotionStatus, Request, Response, Role};
 use shared::state::{Fault, State, TrackerFault};
 use std::time::Duration;
@@ -43,6 +44,8 @@ pub(super) struct Session<'a> {
     pub recentring: Option<Recentring>,
     pub record: Record,
     pub motion: MotionStatus,
+    /// The probe, if the machine has one.
+    pub probe: Option<ProbeInput>,
     pub began: Duration,
     lost_before: u32,
     next_status: Duration,
@@ -87,6 +90,7 @@ impl<'a> Session<'a> {
             record: Record::new(spooling),
             lost_before: lost(&motion),
             motion,
+            probe: None,
             began,
             next_status: began,
             ticked: began,

@@ -107,6 +107,17 @@ struct InputWatch {
     was: Option<bool>,
 }
 
+/// Samples after path tick `tick`.
+pub(super) fn newer(
+    samples: &VecDeque<MotionSample>,
+    tick: u32,
+) -> impl Iterator<Item = &MotionSample> + use<'_> {
+    // The count of ticks starts again after 49 days.
+    let newer = |sample: &&MotionSample| (1..1 << 31).contains(&sample.tick.wrapping_sub(tick));
+    let new = samples.iter().rev().take_while(newer).count();
+    samples.range(samples.len() - new..)
+}
+
 impl InputWatch {
     /// In samples after path tick `tick`.
     fn new(tick: u32, input: u8, event: InputEvent) -> Self {
@@ -120,10 +131,7 @@ impl InputWatch {
 
     /// Whether it came in the samples that are new.
     fn look(&mut self, samples: &VecDeque<MotionSample>) -> bool {
-        // The count of ticks starts again after 49 days.
-        let newer = |sample: &&MotionSample| (1..1 << 31).contains(&sample.tick.wrapping_sub(self.tick));
-        let new = samples.iter().rev().take_while(newer).count();
-        for sample in samples.range(samples.len() - new..) {
+        for sample in newer(samples, self.tick) {
             let is = Bits(sample.inputs).get(self.input);
             let was = self.was.replace(is).unwrap_or(is);
             self.tick = sample.tick;

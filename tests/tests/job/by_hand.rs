@@ -229,6 +229,9 @@ fn a_probe_by_hand_leaves_what_it_found_to_the_blocks_after_it() {
             block("G10 L2 P1 Z#5063"),
             block("G0 Z12"),
             block("G0 X[#5061 + 1000 * #5070]"),
+            block("G0 X#5061"),
+            Deed::Asks(ByHand::Jog(jog(JogWay::Axis(2), -20.0, Some(40.0)))),
+            Deed::Asks(ByHand::Jog(jog(JogWay::Axis(2), 20.0, Some(10.0)))),
         ],
     );
     let told: Vec<_> = rests.iter().map(|rest| rest.told.join("; ")).collect();
@@ -250,4 +253,12 @@ fn a_probe_by_hand_leaves_what_it_found_to_the_blocks_after_it() {
         tip(5)
     );
     assert!((tip(6)[0] - 1700.0).abs() < 0.005, "{:?}", tip(6));
+    // A jog that runs into the plate ends there, and one away from it does not.
+    assert!(told[8].starts_with("the probe touches in a motion"), "{told:?}");
+    let below = plate::CORNER[2] - 300.0 - tip(8)[2];
+    assert!((0.0..5.0).contains(&below), "{below} mm into the plate");
+    assert!(
+        told[9].is_empty() && (tip(9)[2] - tip(8)[2] - 10.0).abs() < 1e-6,
+        "{told:?}"
+    );
 }

@@ -53,6 +53,15 @@ fn what_is_not_as_the_program_has_it_ends_the_job_at_rest() {
              that may be",
         ),
         (
+            "G1 Z-110 F3000",
+            "line 3: the probe touches in a motion that is none of G38, and the machine stops: look at what it touches, and lead \
+             it away",
+        ),
+        (
+            "G38.2 Z-110 F600\nG0 Z-60\nG0 X710\nG0 Z-120",
+            "line 6: the probe touches in a motion that is none of G38",
+        ),
+        (
             "G38.2 Z-110 F600\nG0 Z[[#5063 + 110] * 100]",
             "line 4, column 4: axis Z would have to go to 147",
         ),

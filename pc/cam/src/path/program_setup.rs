@@ -93,7 +93,7 @@ impl Planner {
     }
 
     /// The probe of G38, where the machine file names one.
-    fn probe(&self) -> Option<ProbeInput> {
+    pub fn probe(&self) -> Option<ProbeInput> {
         let ProbeConfig { input, opens } = self.program.probe.as_ref()?;
         Some(ProbeInput {
             input: *self.input_names.get(input)?,
