@@ -1,5 +1,6 @@
 //! Jobs on boards: from drives off to the result, with the machine at rest at the end whatever happens.
 
+mod answers;
 mod by_hand;
 mod calibrating;
 mod cameras;
@@ -46,6 +47,7 @@ pub use stopped::stopped;
 pub use surroundings::{Surroundings, SurroundingsError};
 pub use teaching::{NoTeaching, RangingProbe, Taught, check_teaching};
 
+use answers::Answers;
 use cam::path::{FromLineError, JogError, PathError, PlannedPath, Planner};
 use config::machine::MachineFile;
 use feeding::Feeding;
@@ -54,9 +56,8 @@ use host_link::Control;
 use host_link::boards::{Boards, LinkError};
 use host_link::events::{Event, Next, Phase, STOPPED};
 use host_link::spool::Spooling;
-use nc::{InputEvent, Program, Wait};
+use nc::{InputEvent, NcError, Program, Wait};
 use parts::PartFile;
-use probing::Probing;
 use session::Session;
 use shared::io::SIDES;
 use shared::parameter::ParameterError;
@@ -269,6 +270,9 @@ pub enum JobError {
     /// A motion with the probe was not as the program has it.
     #[error(transparent)]
     Probe(#[from] ProbeError),
+    /// A program cannot be run with what the machine has answered.
+    #[error("with what the machine has found, the program does not go on: {0}")]
+    Answered(NcError),
     /// A block by hand that is none.
     #[error("the block is not carried out: {0}")]
     Block(String),
@@ -326,6 +330,7 @@ impl JobError {
         match self {
             Self::Path(_)
             | Self::Probe(_)
+            | Self::Answered(_)
             | Self::Teach(_)
             | Self::Move(_)
             | Self::Jog(_)
@@ -409,22 +414,28 @@ impl Weld {
         Ok(())
     }
 
-    /// Runs a program from where the axes stand; the program as it was with all that its probe has found.
+    /// Runs a program from where the axes stand; the program as it was with all that the machine has answered.
     fn program(&mut self, session: &mut Session, job: &Job, program: &Program) -> Result<Program, JobError> {
         let mut elsewhere = Phase::Approaching;
-        let mut probing = Probing::new(program, session.motion.reference);
-        let mut left = probing.plan(job, &self.planner)?;
-        check_attended(session, left.as_slice())?;
+        let mut answers = Answers::new(program, session.motion.reference);
+        let mut left = answers.plan(job, &self.planner)?;
+        check_attended(session, &answers, left.as_slice())?;
         let mut begun = false;
         while let Some(path) = left.next() {
-            // A stop of the program is one of single block.
-            let stops = path.waits_before.iter().any(Wait::is_for_operator);
+            // A stop of the program is one of single block, and what is read anew at a wait was asked for before it.
+            let asked = |wait: &Wait| wait.is_for_operator() || answers.is_over(wait);
+            let stops = path.waits_before.iter().any(asked);
             if std::mem::replace(&mut begun, true) && !stops {
                 let next = match path.first_and_last_line().0 {
                     0 => Next::Approach,
                     line => Next::Line(line),
                 };
                 session.wait_before(next)?;
+            }
+            if self.wait_before(session, &path, &mut answers)? {
+                left = answers.plan(job, &self.planner)?;
+                check_attended(session, &answers, left.as_slice())?;
+                continue;
             }
             let phase = if path.probe.is_some() {
                 Phase::Probing
@@ -437,17 +448,17 @@ impl Weld {
             let probe = path.probe;
             self.path(session, path, phase)?;
             if let Some(probe) = probe {
-                probing.take(self, session, probe)?;
-                left = probing.plan(job, &self.planner)?;
-                check_attended(session, left.as_slice())?;
+                let found = probing::found(session, &self.planner, &probe)?;
+                answers.probed(&probe, found)?;
+                left = answers.plan(job, &self.planner)?;
+                check_attended(session, &answers, left.as_slice())?;
             }
         }
-        Ok(probing.program())
+        Ok(answers.program())
     }
 
     /// Loads and runs one path; the machine stands afterwards, on an error too.
     fn path(&mut self, session: &mut Session, path: PlannedPath, phase: Phase) -> Result<(), JobError> {
-        self.wait_before(session, &path)?;
         self.run(session, path, phase, follow)
     }
 

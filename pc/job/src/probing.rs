@@ -1,16 +1,14 @@
-//! Motions of a program with the probe: what the machine finds, and how the program goes on with it.
+//! Motions with the probe, and other motions in which it touches something.
 
+use crate::JobError;
 use crate::session::Session;
 use crate::waits::newer;
-use crate::{Job, JobError, Weld};
 use cam::path::{PlannedPath, Planner};
 use host_link::boards::LinkError;
 use host_link::events::Event;
-use nc::{NcError, Probe, ProbeInput, Probed, Program};
+use nc::{Probe, ProbeInput, Probed};
 use shared::io::{AXES, Bits};
 use shared::protocol::{Refusal, Request, Role};
-use std::borrow::Cow;
-use std::vec::IntoIter;
 use thiserror::Error;
 
 /// What becomes of a motion with the probe that was not as the program has it. The machine stands.
@@ -36,9 +34,6 @@ pub enum ProbeError {
         .0.map(|line| format!("line {line}: ")).unwrap_or_default()
     )]
     Hit(Option<u32>),
-    /// The program cannot be run with what was found.
-    #[error("with what the probe found, the program does not go on: {0}")]
-    After(NcError),
 }
 
 /// Has the board run `path`, to its end or until the probe says so.
@@ -97,62 +92,27 @@ impl Guard {
     }
 }
 
-/// Paths of a program, and what its motions with the probe have found.
-pub(super) struct Probing<'a> {
-    /// As it was read last.
-    program: Cow<'a, Program>,
-    /// Where the axes stood when it began (mm, degrees).
-    from: [f64; AXES],
-    found: Vec<Probed>,
-}
-
-impl<'a> Probing<'a> {
-    pub fn new(program: &'a Program, from: [f64; AXES]) -> Self {
-        Self {
-            program: Cow::Borrowed(program),
-            from,
-            found: Vec::new(),
+/// What the last motion, that of `probe`, has found, which the operator is told.
+pub(super) fn found(session: &mut Session, planner: &Planner, probe: &Probe) -> Result<Probed, ProbeError> {
+    let tip = |axes: &[f64; AXES]| {
+        let tip = planner.tip(axes);
+        let [x, y, z] = tip.position_mm;
+        let [a, b, c] = tip.angles_deg;
+        [x, y, z, a, b, c]
+    };
+    let met = session.motion.met.as_ref().map(tip);
+    let stands = tip(&session.motion.reference);
+    let (line, code) = (probe.place.line, probe.code);
+    let text = match met {
+        None if probe.must => return Err(ProbeError::Nothing(*probe)),
+        None => format!("line {line}: {code}: the probe has met nothing"),
+        Some([x, y, z, ..]) => {
+            let what = if probe.away { "came free" } else { "touched" };
+            format!(
+                "line {line}: {code}: the probe {what} with the tip at X{x:.3} Y{y:.3} Z{z:.3} of the machine"
+            )
         }
-    }
-
-    /// All paths that are left.
-    pub fn plan(&self, job: &Job, planner: &Planner) -> Result<IntoIter<PlannedPath>, JobError> {
-        let mut left = job.plan(&self.program, planner, &self.from)?.into_iter();
-        for _ in &self.found {
-            left.find(|path| path.probe.is_some());
-        }
-        Ok(left)
-    }
-
-    /// Takes what the last motion, that of `probe`, has found: what follows it is read anew.
-    pub fn take(&mut self, weld: &Weld, session: &mut Session, probe: Probe) -> Result<(), JobError> {
-        let tip = |axes: &[f64; AXES]| {
-            let tip = weld.planner.tip(axes);
-            let [x, y, z] = tip.position_mm;
-            let [a, b, c] = tip.angles_deg;
-            [x, y, z, a, b, c]
-        };
-        let met = session.motion.met.as_ref().map(tip);
-        let stands = tip(&session.motion.reference);
-        let (line, code) = (probe.place.line, probe.code);
-        let text = match met {
-            None if probe.must => return Err(ProbeError::Nothing(probe).into()),
-            None => format!("line {line}: {code}: the probe has met nothing"),
-            Some([x, y, z, ..]) => {
-                let what = if probe.away { "came free" } else { "touched" };
-                format!(
-                    "line {line}: {code}: the probe {what} with the tip at X{x:.3} Y{y:.3} Z{z:.3} of the machine"
-                )
-            }
-        };
-        session.control.publish(Event::Message(text));
-        self.found.push(Probed { met, stands });
-        self.program = Cow::Owned(self.program.probed(&self.found).map_err(ProbeError::After)?);
-        Ok(())
-    }
-
-    /// The program as it was read last.
-    pub fn program(self) -> Program {
-        self.program.into_owned()
-    }
+    };
+    session.control.publish(Event::Message(text));
+    Ok(Probed { met, stands })
 }

@@ -105,7 +105,7 @@ fn flatten(program: Program) -> Result<Vec<Item>, NcError> {
                 Until::Continued => list.pause(),
                 Until::ToolIn(number) => list.tool(number),
                 // The peer does not print what it waits for.
-                Until::Input { .. } => {}
+                Until::Input { .. } | Until::Read { .. } => {}
             }
         }
         list.dwell(path.dwell_before_s);

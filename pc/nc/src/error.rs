@@ -483,12 +483,6 @@ pub enum Problem {
     /// G4, M62, M63 or M67 without a motion after it.
     #[error("{0} has no motion after it with which it could take effect")]
     NoMotionAfter(&'static str),
-    /// #5399 after an M66.
-    #[error(
-        "what the M66 before found (#5399) is not known when the program is read, which is before the machine moves: \
-         let M66 wait with L1 to L4, and the program goes on only if the input came"
-    )]
-    InputUnknown,
     /// G5.3 or G6.3 without a curve to close.
     #[error("{0} has no NURBS to close")]
     NothingToClose(&'static str),

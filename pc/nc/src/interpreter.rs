@@ -1,5 +1,6 @@
 //! From blocks to paths: what each block does, in the order of RS274/NGC.
 
+use super::answers::Answer;
 use super::block::{Block, CodeWord};
 use super::claims::Claims;
 use super::codes::{Code, Group};
@@ -13,7 +14,7 @@ use super::nurbs::{OpenNurbs, Progress};
 use super::offsets::{Coordinates, Offsets};
 use super::outputs::{Pending, Spindle, coolant, dwell, output};
 use super::parameters::Parameters;
-use super::probing::{Found, Probed};
+use super::probing::Found;
 use super::program::{
     AXIS_WORDS, EXTENSION_WORDS, FeedRate, Motion, Notice, Program, ProgramAction, ProgramPath,
 };
@@ -36,9 +37,12 @@ const MOST_NOTICES: usize = 100;
 pub(super) struct Interpreter {
     pub(super) setup: Arc<Setup>,
     pub(super) optional_stop: bool,
-    /// What motions with the probe have found, and how many were read.
-    pub(super) probed: Arc<[Probed]>,
-    pub(super) probes: usize,
+    /// What the machine has answered, and how often it was asked.
+    pub(super) answers: Arc<[Answer]>,
+    pub(super) asked: usize,
+    /// Questions whose answers were looked at.
+    pub(super) looked: Vec<usize>,
+    /// What the last motion with the probe has found.
     pub(super) found: Option<Found>,
     pub(super) modal: Modal,
     pub(super) offsets: Offsets,
@@ -78,8 +82,10 @@ pub(super) struct Interpreter {
     pub(super) waits: Vec<Wait>,
     /// The last comment or message since the last motion.
     pub(super) said: Option<String>,
-    /// An M66 has set #5399.
-    pub(super) input_read: bool,
+    /// How many waits there were.
+    pub(super) waited: usize,
+    /// The question of the last M66, and #5399 after it.
+    pub(super) input: Option<(usize, f64)>,
     /// s, and where it was programmed.
     dwell: Option<(f64, SourcePosition)>,
     pub(super) paths: Vec<ProgramPath>,
@@ -109,8 +115,9 @@ impl Interpreter {
         Self {
             setup: setup.clone(),
             optional_stop: options.optional_stop,
-            probed: options.probed.clone(),
-            probes: 0,
+            answers: options.answers.clone(),
+            asked: 0,
+            looked: Vec::new(),
             found: setup.found,
             modal: Modal::new(setup),
             offsets: Offsets::new(&setup.systems),
@@ -138,7 +145,8 @@ impl Interpreter {
             burning: Burning::default(),
             waits: Vec::new(),
             said: None,
-            input_read: false,
+            waited: 0,
+            input: None,
             dwell: None,
             paths: Vec::new(),
             open: false,

@@ -9,6 +9,7 @@
 //! Reading knows no machine: which axes, beams and spindle it has, and where words that are not said leave the tip,
 //! is the matter of `cam::path`.
 
+mod answers;
 mod arc;
 mod block;
 mod branches;
@@ -57,6 +58,7 @@ pub mod text;
 mod tool_length;
 mod waits;
 
+pub use answers::Answer;
 pub use error::{NcError, Problem, SourcePosition};
 pub use explain::{Told, explain, explain_file};
 pub use laser::Laser;

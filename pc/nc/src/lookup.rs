@@ -87,7 +87,7 @@ impl Lookup for Interpreter {
         match parameter {
             Parameter::Numbered(number) => match place(*number) {
                 Some(place) => self.state(&place),
-                None if *number == INPUT && self.input_read => None,
+                None if *number == INPUT => Some(self.look_at_input()),
                 None => self.parameters.get(parameter),
             },
             Parameter::Named(name) => match self.parameters.get(parameter) {
@@ -107,6 +107,22 @@ impl Interpreter {
     /// What conditions may depend on has not changed, nor been looked at, as long as this stays as it is.
     pub(super) fn conditions(&self) -> u64 {
         self.parameters.changes + self.looks
+    }
+
+    /// #5399: 0 before any M66. What is read of it depends on what the machine answers.
+    fn look_at_input(&mut self) -> f64 {
+        let Some((question, value)) = self.input else {
+            return self
+                .parameters
+                .get(&Parameter::Numbered(INPUT))
+                .unwrap_or_default();
+        };
+        self.looks += 1;
+        self.branches = true;
+        if !self.looked.contains(&question) {
+            self.looked.push(question);
+        }
+        value
     }
 
     fn state(&mut self, place: &Place) -> Option<f64> {

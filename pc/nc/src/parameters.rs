@@ -98,7 +98,6 @@ impl Parameter {
     /// Why it cannot be read.
     pub(super) fn no_value(&self) -> Problem {
         match self {
-            Self::Numbered(INPUT) => Problem::InputUnknown,
             Self::Numbered(number) if is_of_control(*number) => Problem::OfControl(*number),
             Self::Numbered(number) => Problem::Vacant(*number),
             _ => Problem::Undefined(self.to_string()),

@@ -1,20 +1,13 @@
-//! Motions that end where the probe touches, or where it no longer does: G38.2 to G38.5 and G31.
-//!
-//! A program is read before the machine moves, and nobody knows then what the probe will meet: its motions are taken to go to
-//! their ends, where those of G38.2 and G38.4 meet what they must. When the machine has been there, the program is read again
-//! from its beginning with what was found ([`Program::probed`]), and goes on behind it.
+//! Motions that end where the probe touches, or where it no longer does: G38.2 to G38.5 and G31. Until the machine has been
+//! there ([`super::answers`]) they are taken to go to their ends, where those of G38.2 and G38.4 meet what they must.
 
+use super::answers::Answer;
 use super::codes::Code;
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
 use super::offsets::Coordinates;
-use super::program::{FeedRate, Motion, Program, Way, Words};
-use super::reading::{KEPT, read};
-use super::setup::Options;
-use super::source::Source;
+use super::program::{FeedRate, Motion, Way, Words};
 use shared::io::AXES;
-use std::fmt;
-use std::sync::Arc;
 
 /// X of where the last probe touched, in coordinates of the program, and whether it did.
 const FOUND: u32 = 5061;
@@ -46,6 +39,8 @@ pub struct Probe {
     pub code: &'static str,
     /// Where the program says so.
     pub place: SourcePosition,
+    /// Number of the question what it meets, from 0.
+    pub question: usize,
 }
 
 /// What a machine found: X Y Z \[mm\], A B C \[°\] of its tip.
@@ -73,50 +68,14 @@ impl Found {
     }
 }
 
-/// How a program is read again, and what the last motion of this reading has found.
-#[derive(Clone)]
-pub(super) struct Again {
-    pub source: Source,
-    pub options: Options,
-    pub found: Option<Found>,
-}
-
-impl fmt::Debug for Again {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Again")
-    }
-}
-
-/// It says nothing of what a program does.
-impl PartialEq for Again {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-impl Program {
-    /// What its last motion with the probe has found; `None` of a program without any.
-    pub fn found(&self) -> Option<Found> {
-        self.again.as_ref()?.found
-    }
-
-    /// The same program after its first motions with the probe, of which is known what they `found`.
-    ///
-    /// # Errors
-    /// What follows them does not go with what was found, or the program is not as it was when it was read.
-    pub fn probed(&self, found: &[Probed]) -> Result<Self, NcError> {
-        let Some(again) = &self.again else {
-            return Ok(self.clone());
-        };
-        let options = Options {
-            probed: Arc::from(found),
-            ..again.options.clone()
-        };
-        read(&again.source, options, KEPT)
-    }
-}
-
 impl Interpreter {
+    /// The number of the next question, and the answer if there is one.
+    pub(super) fn ask(&mut self) -> (usize, Option<Answer>) {
+        let question = self.asked;
+        self.asked += 1;
+        (question, self.answers.get(question).copied())
+    }
+
     /// The straight motion of `mode`, G38 or G31, to where `words` say.
     pub(super) fn probe(
         &mut self,
@@ -168,15 +127,14 @@ impl Interpreter {
         }
         // It is begun at its beginning: what follows depends on what is found.
         self.branches = true;
-        let found = self.probed.get(self.probes).copied();
-        self.probes += 1;
-        let met = match found {
-            Some(found) => {
+        let (question, answer) = self.ask();
+        let met = match answer {
+            Some(Answer::Probe(found)) => {
                 let there = self.end_of_tool(&found.stands);
                 self.at[..3].copy_from_slice(&there[..3]);
                 found.met.map(|met| self.end_of_tool(&met))
             }
-            None => {
+            _ => {
                 let text = format!(
                     "{code} is taken to go to the end of its motion until the machine has been there: what follows may be elsewhere"
                 );
@@ -198,6 +156,7 @@ impl Interpreter {
                 away,
                 code,
                 place,
+                question,
             });
         }
         self.note_found(met);

@@ -1,9 +1,10 @@
 //! A program after reading: motions from rest to rest, with the values of their words.
 
+use super::answers::Again;
 use super::block::Block;
 use super::error::SourcePosition;
 use super::offsets::{CoordinateSystem, SYSTEMS};
-use super::probing::{Again, Probe};
+use super::probing::Probe;
 use super::reading::RemainingBlocks;
 use super::waits::{Until, Wait};
 use shared::geometry::Turn;
@@ -30,7 +31,7 @@ pub struct Program {
     pub systems: Box<[CoordinateSystem; SYSTEMS]>,
     /// What a person should know of how it was read, and what it says itself (MSG, DEBUG, PRINT).
     pub notices: Vec<Notice>,
-    /// How it is read again, if it has motions with the probe.
+    /// How it is read again, if it asks the machine anything.
     pub(super) again: Option<Box<Again>>,
 }
 
@@ -45,7 +46,7 @@ impl Program {
         let before = self.waits().take_while(|wait| wait.place.line < line);
         let tools = before.filter_map(|wait| match wait.until {
             Until::ToolIn(tool) => Some(tool),
-            Until::Continued | Until::Input { .. } => None,
+            Until::Continued | Until::Input { .. } | Until::Read { .. } => None,
         });
         tools.last()
     }

@@ -1,5 +1,6 @@
 //! Lines of a program one after the other: loops, conditions and subroutines decide which is the next.
 
+use super::answers::Again;
 use super::block::{Parsed, Skipped, parse};
 use super::branches::Open;
 use super::effort::Effort;
@@ -8,7 +9,6 @@ use super::interpreter::Interpreter;
 use super::levels::{Called, Level};
 use super::line_parts;
 use super::parameters::Parameter;
-use super::probing::Again;
 use super::program::Program;
 use super::setup::Options;
 use super::siemens::calls;
@@ -327,12 +327,14 @@ impl Reader {
             .position
             .levels
             .first()
-            .filter(|_| self.interpreter.probes > 0);
+            .filter(|_| self.interpreter.asked > 0);
+        let looked = self.interpreter.looked.clone();
         let again = main.map(|main| {
             Box::new(Again {
                 source: main.source.clone(),
                 options: self.options,
                 found: self.interpreter.found,
+                looked,
             })
         });
         Program {

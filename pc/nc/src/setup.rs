@@ -1,8 +1,9 @@
 //! What a program begins with: choices of the operator, and what the machine brings along.
 
+use super::answers::Answer;
 use super::laser::Laser;
 use super::offsets::{CoordinateSystem, SYSTEMS};
-use super::probing::{Found, ProbeInput, Probed};
+use super::probing::{Found, ProbeInput};
 use super::program::{PathControl, Plane};
 use shared::io::AXES;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,8 +18,8 @@ pub struct Options {
     pub block_delete: bool,
     /// M1 stops the machine.
     pub optional_stop: bool,
-    /// What motions with the probe have found so far, in the order of the program.
-    pub probed: Arc<[Probed]>,
+    /// What the machine has answered so far, in the order of the program.
+    pub answers: Arc<[Answer]>,
     /// What the machine brings along.
     pub setup: Arc<Setup>,
 }

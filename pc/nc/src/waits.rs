@@ -1,5 +1,6 @@
 //! Waits of a program: M0, M1, M60, M6 with another tool, and M66. The machine rests between two paths until they are over.
 
+use super::answers::Answer;
 use super::block::{Block, CodeWord};
 use super::claims::Claims;
 use super::codes::{Code, Group};
@@ -21,6 +22,10 @@ pub struct Wait {
     pub place: SourcePosition,
     /// The last comment or message of the program before it, and after the last motion.
     pub text: Option<String>,
+    /// How many waits are before it in the program.
+    pub number: usize,
+    /// Number of the question what the input does, from 0.
+    pub question: Option<usize>,
 }
 
 /// What ends a wait.
@@ -38,6 +43,11 @@ pub enum Until {
         event: InputEvent,
         /// The longest wait \[s\].
         within_s: f64,
+    },
+    /// M66 with L0: an input of the process is read.
+    Read {
+        /// Its number, from 0.
+        input: u8,
     },
 }
 
@@ -57,7 +67,7 @@ pub enum InputEvent {
 impl Wait {
     /// Whether the operator has to end it.
     pub fn is_for_operator(&self) -> bool {
-        !matches!(self.until, Until::Input { .. })
+        !matches!(self.until, Until::Input { .. } | Until::Read { .. })
     }
 }
 
@@ -72,6 +82,17 @@ impl fmt::Display for Until {
                 event,
                 within_s,
             } => write!(f, "until input {} {event}, {within_s} s at most", input + 1),
+            Self::Read { input } => write!(f, "until input {} is read", input + 1),
+        }
+    }
+}
+
+impl InputEvent {
+    /// `#5399` after it: 1 where the input is on, 0 where it is off.
+    pub fn after(self) -> i8 {
+        match self {
+            Self::Rises | Self::High => 1,
+            Self::Falls | Self::Low => 0,
         }
     }
 }
@@ -94,7 +115,7 @@ impl Interpreter {
             // What was said was said of this.
             self.said = None;
         } else {
-            self.wait_at_rest(Until::Continued, code);
+            self.wait_at_rest(Until::Continued, code, None);
         }
     }
 
@@ -108,7 +129,7 @@ impl Interpreter {
             if let Some(name) = self.name_of_tool(next) {
                 self.said = Some(format!("tool {name}"));
             }
-            self.wait_at_rest(Until::ToolIn(next), code);
+            self.wait_at_rest(Until::ToolIn(next), code, None);
         } else {
             self.wait(Pending {
                 action: ProgramAction::ChangeTool(next),
@@ -156,12 +177,16 @@ impl Interpreter {
                 ));
             }
         };
-        self.input_read = true;
+        let (question, answer) = self.ask();
+        // What is waited for comes, and what is only read is off, until the machine has been there.
+        let likely = event.map_or(0, InputEvent::after);
+        let value = match answer {
+            Some(Answer::Input(value)) => value,
+            _ => likely,
+        };
+        self.input = Some((question, value.into()));
         let Some(event) = event else {
-            let text = "M66 with L0 only brings the machine to rest: what it reads is #5399, and programs are read before \
-                        the machine moves";
-            self.notice(text.to_owned(), code.place);
-            self.open = false;
+            self.wait_at_rest(Until::Read { input }, *code, Some(question));
             return Ok(());
         };
         let q = claims.word(code.code, "Q").ok_or_else(|| missing("Q"))?;
@@ -173,12 +198,12 @@ impl Interpreter {
             event,
             within_s: q.value,
         };
-        self.wait_at_rest(until, *code);
+        self.wait_at_rest(until, *code, Some(question));
         Ok(())
     }
 
     /// The path ends, what takes effect at rest does so, and the machine waits.
-    fn wait_at_rest(&mut self, until: Until, code: CodeWord) {
+    fn wait_at_rest(&mut self, until: Until, code: CodeWord, question: Option<usize>) {
         self.stand();
         if self.dwell_s() > 0.0 {
             self.standing(Vec::new());
@@ -189,6 +214,9 @@ impl Interpreter {
             code: code.name,
             place: code.place,
             text: self.said.take(),
+            number: self.waited,
+            question,
         });
+        self.waited += 1;
     }
 }

@@ -329,3 +329,60 @@ fn an_input_that_does_not_come_ends_the_job_at_rest() {
     ));
     assert!(Bits(run.samples[run.samples.len() - 1].inputs).get(0));
 }
+
+/// Waits for the operator, and then for the clamp; what came of it leads on one of two ways.
+#[test]
+fn a_program_that_looks_at_an_input_goes_its_own_way() {
+    let program = |words: &str| {
+        format!(
+            "G0 X450 Y0 Z5\nG1 X470 F1000\nM0\nM66 P2 {words}\no1 if [#5399 EQ 1]\nX490\no1 else\nX480 Y[10 * #5399]\n\
+             G0 Z20\no1 endif\nM66 P2 L4 Q9\nX500\nM2"
+        )
+    };
+    for (words, low_ms, paths, y) in [
+        // It comes, or not, and is off, or on.
+        ("L3 Q5", 3000, 4, 0.0),
+        ("L3 Q1", 4500, 5, -10.0),
+        ("L0", 4500, 5, 0.0),
+        ("L0", 1, 4, 0.0),
+    ] {
+        let mut boards = SimulatedBoards::new("wire-arc").unwrap();
+        let [low, high] = [false, true].map(|on| {
+            InjectedFault::MotionInputs(match on {
+                true => |read| read.process.set(2, true),
+                false => |read| read.process.set(2, false),
+            })
+        });
+        boards.inject(low);
+        let (mut on_path, mut rested_ms) = (false, 0);
+        let on_sample = |boards: &mut SimulatedBoards, sample: &MotionSample| {
+            on_path |= sample.path_id == 2;
+            rested_ms += u32::from(on_path && sample.path_id == 0);
+            match rested_ms {
+                ms if ms == low_ms => boards.inject(high),
+                6000 => boards.inject(low),
+                _ => {}
+            }
+        };
+        let mut operator = Waited::default();
+        let text = program(words);
+        let run = Run::on(
+            &mut boards,
+            &robot(),
+            (&text, Options::default()),
+            &mut operator,
+            on_sample,
+        );
+        assert!(run.ended.error.is_none(), "{words}: {:?}", run.ended.error);
+        // The operator is asked once.
+        assert_eq!(operator.asked, [stop("M0", 3, None)], "{words}");
+        // Parking takes two paths besides.
+        assert_eq!(run.paths(), paths + 2, "{words}");
+        let planner = Planner::build(&robot()).unwrap();
+        let third = run.samples.iter().rfind(|sample| sample.path_id == 3).unwrap();
+        let axes = std::array::from_fn(|axis| third.axes[axis] / shared::kinematics::AXIS_UNIT[axis]);
+        let [x, at, _] = planner.tip(&axes).position_mm;
+        assert!((at - y).abs() < 0.1, "{words}: Y{at}");
+        assert!((x - if paths == 4 { 490.0 } else { 480.0 }).abs() < 0.1, "{words}: X{x}");
+    }
+}

@@ -7,7 +7,7 @@ impl Planner {
     /// The machine must have every input that is waited for.
     pub(super) fn check_inputs(&self, waits: &[Wait]) -> Result<(), PathError> {
         for wait in waits {
-            if let Until::Input { input, .. } = wait.until
+            if let Until::Input { input, .. } | Until::Read { input } = wait.until
                 && self.input_name(input).is_none()
             {
                 return Err(PathError::NoOutput {

@@ -1,7 +1,7 @@
 //! Motions with the probe: what ends them, and what is known after them.
 
 use super::*;
-use crate::probing::{Probe, ProbeInput, Probed};
+use crate::probing::{Probe, ProbeInput};
 use std::sync::Arc;
 
 /// With a probe at the second input.
@@ -93,11 +93,11 @@ fn the_program_goes_on_with_what_was_found() {
     assert_eq!(shape[3], [Some(100.0), Some(0.0), Some(-10.0)]);
     assert_eq!(shape[4][2], Some(-5.0));
     // It touched at -2.5 of the machine, which is -12.5 of the program, and stood a little lower.
-    let found = Probed {
+    let found = Answer::Probe(Probed {
         met: Some(at(100.0, 0.0, -2.5)),
         stands: at(100.0, 0.0, -2.53),
-    };
-    let program = program.probed(&[found]).unwrap();
+    });
+    let program = program.answered(&[found]).unwrap();
     let shape = ends(&program);
     assert_eq!(shape[3], [Some(100.0), Some(0.0), Some(-2.53)]);
     // G92 is where the tip stands.
@@ -117,20 +117,22 @@ fn conditions_see_whether_it_touched() {
     let program = with_probe(body).unwrap();
     let probes = |program: &Program| program.paths.iter().filter(|path| path.probe.is_some()).count();
     assert_eq!(probes(&program), 3, "they are taken to touch nothing");
-    let none = |x| Probed {
-        met: None,
-        stands: at(x, 0.0, 0.0),
+    let none = |x| {
+        Answer::Probe(Probed {
+            met: None,
+            stands: at(x, 0.0, 0.0),
+        })
     };
-    let program = program.probed(&[none(10.0)]).unwrap();
+    let program = program.answered(&[none(10.0)]).unwrap();
     assert_eq!(probes(&program), 3);
-    let met = Probed {
+    let met = Answer::Probe(Probed {
         met: Some(at(17.25, 0.0, 0.0)),
         stands: at(17.3, 0.0, 0.0),
-    };
-    let touched = program.probed(&[none(10.0), met]).unwrap();
+    });
+    let touched = program.answered(&[none(10.0), met]).unwrap();
     assert_eq!(probes(&touched), 2);
     assert_eq!(ends(&touched).last().unwrap()[2], Some(17.25));
-    let program = program.probed(&[none(10.0), none(20.0), none(30.0)]).unwrap();
+    let program = program.answered(&[none(10.0), none(20.0), none(30.0)]).unwrap();
     assert_eq!(probes(&program), 3);
     // Where it did not, the end of the motion counts.
     assert_eq!(ends(&program).last().unwrap()[2], Some(30.0));
@@ -141,11 +143,11 @@ fn places_are_in_the_units_and_the_system_of_the_program() {
     let body = "G20\nG10 L2 P1 X1 R90\nG38.2 X1 Y0 F10\n(DEBUG,#5061 #5062 #5063 #5070)\nM2";
     let program = with_probe(body).unwrap();
     // X of the program is Y of the machine; from X1 inch.
-    let found = Probed {
+    let found = Answer::Probe(Probed {
         met: Some(at(25.4, 12.7, 0.0)),
         stands: at(25.4, 12.8, 0.0),
-    };
-    let program = program.probed(&[found]).unwrap();
+    });
+    let program = program.answered(&[found]).unwrap();
     let said = &program.notices.last().unwrap().text;
     let numbers: Vec<f64> = said.split(' ').map(|number| number.parse().unwrap()).collect();
     for (number, expected) in numbers.iter().zip([0.5, 0.0, 0.0, 1.0]) {
@@ -156,11 +158,11 @@ fn places_are_in_the_units_and_the_system_of_the_program() {
 #[test]
 fn a_probe_that_touched_at_once_has_moved_nothing() {
     let program = with_probe("G38.3 Z-5 F60\nG0 X10\nM2").unwrap();
-    let found = Probed {
+    let found = Answer::Probe(Probed {
         met: Some(at(0.0, 0.0, 0.0)),
         stands: at(0.0, 0.0, 0.0),
-    };
-    let program = program.probed(&[found]).unwrap();
+    });
+    let program = program.answered(&[found]).unwrap();
     let path = &program.paths[2];
     assert_eq!((path.motion, path.targets.len()), (Motion::Stand, 0));
     assert!(path.probe.is_some());

@@ -127,19 +127,42 @@ fn inputs_are_waited_for_at_rest() {
 }
 
 #[test]
-fn what_an_input_was_is_not_known_when_the_program_is_read() {
-    assert!(run("#1 = #5399\nM66 P0 L3 Q1\nM2").is_ok());
-    for m66 in ["M66 P0 L3 Q1", "M66 P0 L0", "M66 P0"] {
-        let (problem, line) = problem(&format!("{m66}\no1 if [#5399 EQ -1]\nM2\no1 endif\nM2"));
-        assert_eq!((problem, line), (Problem::InputUnknown, 2), "{m66}");
-    }
-    let program = run("F600\nG1 X10\nM66 P0 L0\nX20\nM2").unwrap();
-    assert!(
-        program.notices[0]
-            .text
-            .starts_with("M66 with L0 only brings the machine to rest")
+fn what_an_input_was_is_known_when_the_machine_has_been_there() {
+    let body = "F600\n#1 = #5399\nG1 X10\nM66 P0 L3 Q1\no1 if [#5399 EQ -1]\nG0 Z50\nM0\nM2\no1 endif\nX20\nM66 P1 L0\n\
+                G0 X[100 + #5399]\nM66 P2 L2 Q1\nX30\nM2";
+    let program = run(body).unwrap();
+    let end = |program: &Program| program.paths.last().unwrap().targets[0].words.axes[0];
+    let questions = |program: &Program| -> Vec<_> {
+        let waits = program.waits();
+        waits.map(|wait| (wait.number, wait.question)).collect()
+    };
+    // What is waited for comes, what is read is off.
+    let all = [(0, Some(0)), (1, Some(1)), (2, Some(2))];
+    assert_eq!((end(&program), questions(&program)), (Some(30.0), all.to_vec()));
+    assert_eq!(
+        [0, 1, 2].map(|question| program.looks_at(question)),
+        [true, true, false]
     );
-    assert_eq!(program.waits().count(), 0);
+    assert!(program.branches);
+    let [came, on] = [1, 1].map(Answer::Input);
+    let program = program.answered(&[came, on]).unwrap();
+    let read: Vec<_> = program
+        .paths
+        .iter()
+        .filter_map(|path| path.targets.first()?.words.axes[0])
+        .collect();
+    assert!(read.contains(&101.0), "{read:?}");
+    // In vain: the program ends in its own way.
+    let program = program.answered(&[Answer::Input(-1)]).unwrap();
+    assert_eq!(questions(&program), [(0, Some(0)), (1, None)]);
+    assert_eq!(program.paths[3].targets[0].words.axes[2], Some(50.0));
+    // Nothing depends on it.
+    let program = run("F600\nG1 X10\nM66 P0 L0\nX20\nM2").unwrap();
+    assert_eq!(
+        program.waits().map(|wait| wait.until).collect::<Vec<_>>(),
+        [Until::Read { input: 0 }]
+    );
+    assert!(!program.looks_at(0) && !program.branches && program.notices.is_empty());
     assert_eq!(program.paths[2..].len(), 2);
 }
 
