@@ -29,7 +29,7 @@ pub(super) struct Again {
     pub options: Options,
     /// What its last motion with the probe has found.
     pub found: Option<Found>,
-    /// Numbers of the questions whose answers it has looked at by `#5399`.
+    /// Numbers of the questions whose answers it has looked at by `#5399`, rising.
     pub looked: Vec<usize>,
 }
 
@@ -55,7 +55,7 @@ impl Program {
     /// Whether anything in it depends on the answer to a question, that of this number, to an M66.
     pub fn looks_at(&self, question: usize) -> bool {
         let again = self.again.as_ref();
-        again.is_some_and(|again| again.looked.contains(&question))
+        again.is_some_and(|again| again.looked.binary_search(&question).is_ok())
     }
 
     /// The same program after its first questions, to which these are the `answers`.

@@ -40,7 +40,7 @@ pub(super) struct Interpreter {
     /// What the machine has answered, and how often it was asked.
     pub(super) answers: Arc<[Answer]>,
     pub(super) asked: usize,
-    /// Questions whose answers were looked at.
+    /// Questions whose answers were looked at, rising.
     pub(super) looked: Vec<usize>,
     /// What the last motion with the probe has found.
     pub(super) found: Option<Found>,
