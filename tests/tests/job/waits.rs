@@ -383,6 +383,9 @@ fn a_program_that_looks_at_an_input_goes_its_own_way() {
         let axes = std::array::from_fn(|axis| third.axes[axis] / shared::kinematics::AXIS_UNIT[axis]);
         let [x, at, _] = planner.tip(&axes).position_mm;
         assert!((at - y).abs() < 0.1, "{words}: Y{at}");
-        assert!((x - if paths == 4 { 490.0 } else { 480.0 }).abs() < 0.1, "{words}: X{x}");
+        assert!(
+            (x - if paths == 4 { 490.0 } else { 480.0 }).abs() < 0.1,
+            "{words}: X{x}"
+        );
     }
 }
