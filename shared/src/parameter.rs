@@ -196,6 +196,11 @@ const FIELDS: &[&str] = &[
     "search_height_mm",
     "view_mm",
     "drive_enable_ms",
+    "deviation.axis",
+    "deviation.motor",
+    "deviation.from",
+    "deviation.step",
+    "deviation.values",
 ];
 
 impl ParameterError {

@@ -64,6 +64,10 @@ impl<'a> RecordedBoards<'a> {
                 let (machine, _) = Machine::build(config).expect("the board took it");
                 self.machine = Some(machine);
             }
+            Request::Compensate(deviation) => {
+                let machine = self.machine.as_mut().expect("it was told before");
+                machine.compensate(deviation).expect("the board took it");
+            }
             Request::BeginPath {
                 space,
                 start_s_mm,

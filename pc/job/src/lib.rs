@@ -559,6 +559,9 @@ fn set_up(session: &mut Session, job: &Job) -> Result<(), JobError> {
         Role::Motion,
         &Request::ConfigureMotion(job.machine.motion.clone()),
     )?;
+    for deviation in &job.machine.deviations {
+        session.command(Role::Motion, &Request::Compensate(deviation.clone()))?;
+    }
     // An override that an operator left behind is not one for this job.
     session.command(Role::Motion, &Request::Override { factor: 1.0 })?;
     if let (Some(tracking), Some(unit)) = (&session.tracking, &job.machine.tracking) {

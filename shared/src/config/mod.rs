@@ -3,9 +3,11 @@
 //! What belongs to one law or one machine stands beside it: motors, gantry and reference marks in [`crate::control`], axes
 //! and geometry in [`crate::kinematics`].
 
+mod deviation;
 mod motion;
 mod tracker;
 
+pub use deviation::{DEVIATION_POINTS, DEVIATIONS, DeviationConfig, MOST_DEVIATION, STEEPEST_DEVIATION};
 pub use motion::{
     AnalogConfig, BeamConfig, MotionConfig, OutputConfig, ProcessInputConfig, ProcessIo, ReadbackConfig,
 };

@@ -73,8 +73,9 @@ impl Gantry {
     }
 
     /// One tick of both loops towards the `setpoints` of X1 and X2 (see [`Gantry::motors`]), the motors being
-    /// at `position` \[mm\]. Without `coupled` each goes its own way: before the reference marks are known the
-    /// skew means nothing.
+    /// at `position` \[mm\]. With `coupled` each is held back by how much it leads the other one beyond what is asked for:
+    /// that is the square offset, and what makes up for deviations of their gratings. Without it each goes its own way: before
+    /// the reference marks are known the skew means nothing.
     pub fn step(
         &self,
         state: &mut GantryState,
@@ -87,8 +88,9 @@ impl Gantry {
             return Err(NotFinite);
         }
         let correction = if coupled {
-            let rate = self.derivative.step(&mut state.derivative, skew);
-            self.coupling * skew + self.coupling_derivative * rate
+            let lead = skew - self.skew([setpoints[0].position, setpoints[1].position]);
+            let rate = self.derivative.step(&mut state.derivative, lead);
+            self.coupling * lead + self.coupling_derivative * rate
         } else {
             state.derivative = DerivativeState::default();
             0.0

@@ -538,10 +538,10 @@ impl MotionController {
     }
 
     fn home(&mut self, report: &ServoReport) -> HomingStep {
-        let Some(homing) = &mut self.homing else {
+        let (Some(homing), Some(machine)) = (&mut self.homing, &self.machine) else {
             return HomingStep::default();
         };
-        match homing.tick(report, &mut self.reference) {
+        match homing.tick(report, &mut self.reference, |motors| machine.skew(motors)) {
             Ok(step) => {
                 if step.done {
                     self.homing = None;

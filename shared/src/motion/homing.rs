@@ -25,7 +25,6 @@ const SQUARING: SpeedLimits = SpeedLimits {
 #[derive(Clone, Debug, PartialEq)]
 struct GantryPlan {
     search: ReferenceSearch<2>,
-    square_offset_mm: f64,
     max_skew_mm: f64,
 }
 
@@ -66,7 +65,6 @@ impl HomingPlan {
                         acceleration(X1),
                         PATH_PERIOD_S,
                     )?,
-                    square_offset_mm: gantry.square_offset_mm,
                     max_skew_mm: gantry.skew_trip_mm,
                 });
                 2
@@ -182,18 +180,20 @@ impl Homing {
         missing.map(|motor| self.plan.sequence[motor]).min()
     }
 
-    /// One path tick: moves `reference` on, from what the servo ticks reported.
+    /// One path tick: moves `reference` on, from what the servo ticks reported. `skew` is by how much X1 leads X2 beyond what a
+    /// square beam has, with the motors somewhere \[mm\].
     pub fn tick(
         &mut self,
         report: &ServoReport,
         reference: &mut MotorReference,
+        skew: impl Fn(&[f64; MOTORS]) -> f64,
     ) -> Result<HomingStep, Fault> {
         let mut step = HomingStep::default();
         match &mut self.stage {
             Stage::Searching => match self.turn() {
                 Some(now) => self.search_all(now, report, reference, &mut step)?,
                 // The new frame holds from this report on; square only now.
-                None => self.stage = self.square(reference)?,
+                None => self.stage = self.square(reference, skew(&reference.position))?,
             },
             Stage::Squaring(squaring) => {
                 if squaring.tick(reference) {
@@ -226,13 +226,12 @@ impl Homing {
         Ok(())
     }
 
-    /// X2 to where the beam is square; marks that ask for more than the skew trip were not the right ones.
-    fn square(&self, reference: &MotorReference) -> Result<Stage, Fault> {
+    /// X2 on by `distance` to where the beam is square; marks that ask for more than the skew trip were not the right ones.
+    fn square(&self, reference: &MotorReference, distance: f64) -> Result<Stage, Fault> {
         let Some(gantry) = &self.plan.gantry else {
             return Ok(Stage::Done);
         };
         let from = reference.position[X2];
-        let distance = reference.position[X1] - gantry.square_offset_mm - from;
         let length = libm::fabs(distance);
         let skew = Fault::GantrySkew {
             seen_um: (length * 1000.0) as f32,

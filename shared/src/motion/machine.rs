@@ -1,12 +1,14 @@
 //! A machine's parameters, checked and in the units the ticks use.
 
 use super::beams::BeamLimits;
+use super::compensation::Compensation;
 use super::homing::HomingPlan;
 use super::process_inputs::ProcessInputs;
+use super::segment::MotorReference;
 use super::sensible;
 use super::servo::ServoSetup;
 use super::superimposed::Superimposed;
-use crate::config::MotionConfig;
+use crate::config::{DeviationConfig, MotionConfig};
 use crate::control::{Gantry, Pid};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::kinematics::{AXIS_OWNERS, AxisLimits, AxisMotion, Kinematics, KinematicsError};
@@ -43,6 +45,7 @@ pub struct Machine {
     /// How far beyond its travel an axis may be: twice its way to a stop from its highest speed (mm, rad).
     overrun: [f64; AXES],
     gantry: Option<Gantry>,
+    compensation: Compensation,
 }
 
 impl Machine {
@@ -62,6 +65,7 @@ impl Machine {
             overrun: limits.map(|axis| OVERRUN * full_stop(&axis)),
             limits,
             gantry,
+            compensation: Compensation::NONE,
         };
         let servo = ServoSetup::build(&config.motors, &config.beams, gantry)?;
         sensible::check(config)?;
@@ -78,26 +82,50 @@ impl Machine {
         )
     }
 
-    /// Motors from axes: X1 and X2 stand so that the beam is square.
-    pub fn motors(&self, axes: &[f64; AXES]) -> [f64; MOTORS] {
+    /// Takes a table of measured deviations, beside those of other axes and motors.
+    pub fn compensate(&mut self, deviation: &DeviationConfig) -> Result<(), ParameterError> {
+        let fitted = core::array::from_fn(|motor| self.limits_of(motor).is_some());
+        self.compensation.add(deviation, &fitted)
+    }
+
+    /// Motors from axes: X1 and X2 stand so that the beam is square, and all where measured deviations are made up for.
+    pub fn motors(&self, axes: &AxisMotion) -> MotorReference {
         let [x1, x2] = self
             .gantry
-            .map_or([axes[0], 0.0], |gantry| gantry.motors(axes[0]));
-        [x1, x2, axes[1], axes[2], axes[3], axes[4], axes[5]]
+            .map_or([axes.position[0], 0.0], |gantry| gantry.motors(axes.position[0]));
+        let mut reference = MotorReference {
+            position: with_x(x1, x2, &axes.position),
+            velocity: self.rates(&axes.velocity),
+            acceleration: self.rates(&axes.acceleration),
+        };
+        let compensation = &self.compensation;
+        compensation.place(&axes.position, &mut reference.position);
+        compensation.rate(&axes.position, &axes.velocity, &mut reference.velocity);
+        compensation.rate(&axes.position, &axes.acceleration, &mut reference.acceleration);
+        reference
     }
 
     /// Velocities or accelerations of the motors from those of the axes.
-    pub fn motor_rates(&self, axes: &[f64; AXES]) -> [f64; MOTORS] {
+    fn rates(&self, axes: &[f64; AXES]) -> [f64; MOTORS] {
         let x2 = if self.gantry.is_some() { axes[0] } else { 0.0 };
-        [axes[0], x2, axes[1], axes[2], axes[3], axes[4], axes[5]]
+        with_x(axes[0], x2, axes)
     }
 
-    /// Axes from motors, X where the beam carries the ram (mathematics 0.10).
+    /// Axes from motors, X where the beam carries the ram (mathematics 0.10), without what was measured to deviate.
     pub fn axes(&self, motors: &[f64; MOTORS]) -> [f64; AXES] {
-        let x = self.gantry.map_or(motors[0], |gantry| {
-            gantry.ram([motors[0], motors[1]], motors[2]).x
-        });
-        [x, motors[2], motors[3], motors[4], motors[5], motors[6]]
+        self.compensation.axes(motors, |motors| {
+            let x = self.gantry.map_or(motors[0], |gantry| {
+                gantry.ram([motors[0], motors[1]], motors[2]).x
+            });
+            [x, motors[2], motors[3], motors[4], motors[5], motors[6]]
+        })
+    }
+
+    /// By how much X1 leads X2 beyond what a square beam has \[mm\]; 0 without a gantry.
+    pub fn skew(&self, motors: &[f64; MOTORS]) -> f64 {
+        let actual = self.compensation.actual(motors, &self.axes(motors));
+        self.gantry
+            .map_or(0.0, |gantry| gantry.skew([actual[0], actual[1]]))
     }
 
     /// Limits of the axis of `motor`, if the machine has that motor.
@@ -149,6 +177,11 @@ impl Machine {
     pub fn beyond_travel(&self, axes: &[f64; AXES]) -> Option<usize> {
         (0..AXES).find(|axis| !self.limits[*axis].contains(axes[*axis]))
     }
+}
+
+/// Those of X1 and X2 before those of the other motors.
+fn with_x(x1: f64, x2: f64, axes: &[f64; AXES]) -> [f64; MOTORS] {
+    [x1, x2, axes[1], axes[2], axes[3], axes[4], axes[5]]
 }
 
 /// Way to a stop of an axis from its highest speed (mm, rad); of one that the machine does not have it has no end.

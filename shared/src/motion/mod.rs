@@ -5,6 +5,7 @@
 //! tests use the same two structs.
 
 mod beams;
+mod compensation;
 mod controller;
 mod excitation;
 mod homing;

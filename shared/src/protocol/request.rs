@@ -3,7 +3,7 @@
 use super::element::{BadElement, PathElement};
 use super::excitation::{CapturePart, Excitation};
 use super::inputs::Inputs;
-use crate::config::{MotionConfig, TrackerConfig};
+use crate::config::{DeviationConfig, MotionConfig, TrackerConfig};
 use crate::geometry::PoseOffset;
 use crate::io::{AXES, MOTORS, SIDES, SLIDE_NAMES, SLIDES};
 use crate::parameter::ParameterError;
@@ -46,6 +46,9 @@ pub enum Request {
     Inputs,
     /// Parameters of the machine; motion board, only in state off.
     ConfigureMotion(MotionConfig),
+    /// A table of measured deviations to make up for, beside those of other axes and motors; motion board, only in state off, after
+    /// [`Request::ConfigureMotion`], which forgets all.
+    Compensate(DeviationConfig),
     /// Parameters of the machine; tracker board, only in state off.
     ConfigureTracker(TrackerConfig),
     /// Send path states to the tracker board at this address, and take permits from there.

@@ -1,6 +1,7 @@
 //! The motion board's controller with ideal drives: every stop, trip and way back.
 
 mod bench;
+mod compensation;
 mod estop;
 mod excitation;
 mod filters;

@@ -1,5 +1,6 @@
 //! The machine file as it is written.
 
+use super::deviations;
 use super::process_io;
 use super::tools::{self, ToolConfig};
 use super::{
@@ -26,6 +27,8 @@ pub struct Document {
     axes: ByAxis<AxisConfig>,
     motors: Motors,
     gantry: Option<GantryConfig>,
+    #[serde(default)]
+    deviations: deviations::Tables,
     beams: Sides<BeamConfig>,
     #[serde(default)]
     outputs: BTreeMap<String, process_io::Output>,
@@ -105,18 +108,20 @@ impl TryFrom<Document> for MachineFile {
             inputs: d.inputs,
         };
         let (process, outputs, inputs) = tables.build(&beams)?;
+        let motion = MotionConfig {
+            kinematics: d.kinematics,
+            axes: d.axes.into_array(),
+            motors: [m.X1, m.X2, m.Y, m.Z, m.A, m.B, m.C],
+            gantry: d.gantry,
+            beams,
+            process,
+            link_timeout_ms: d.link_timeout_ms,
+            drive_enable_ms: d.drive_enable_ms,
+        };
         Ok(Self {
             name: d.name,
-            motion: MotionConfig {
-                kinematics: d.kinematics,
-                axes: d.axes.into_array(),
-                motors: [m.X1, m.X2, m.Y, m.Z, m.A, m.B, m.C],
-                gantry: d.gantry,
-                beams,
-                process,
-                link_timeout_ms: d.link_timeout_ms,
-                drive_enable_ms: d.drive_enable_ms,
-            },
+            deviations: deviations::build(&d.deviations, &motion)?,
+            motion,
             tracking: tracking_unit(d.drive_enable_ms, d.head, d.slides, d.tracking, d.cameras)?,
             outputs,
             inputs,

@@ -123,6 +123,14 @@ pub enum Mistake {
         /// Dotted name of the table.
         key: String,
     },
+    /// A table of deviations.
+    #[error("{key} {what}")]
+    Deviations {
+        /// Dotted name of the table.
+        key: String,
+        /// What is wrong with it.
+        what: String,
+    },
     /// Some of the tables of a tracker, but not all.
     #[error(
         "[{table}] is missing; a machine that follows a seam needs [head], [slides], [tracking] and [cameras]"
@@ -140,6 +148,7 @@ impl Mistake {
             Self::Value(error) => error.key.to_string(),
             Self::AxisMissing { key, .. } | Self::NoSuchAxis { key, .. } => key.clone(),
             Self::OutputNumber { key, .. } => format!("{key}.number"),
+            Self::Deviations { key, .. } => key.clone(),
             Self::NoSuchBeam { key, .. } | Self::AnswerIncomplete { key, .. } | Self::ToolNumber { key } => {
                 key.clone()
             }

@@ -2,6 +2,7 @@
 
 mod cameras;
 mod check;
+mod deviations;
 mod document;
 mod error;
 mod process_io;
@@ -24,7 +25,7 @@ use crate::weld_data::WeldData;
 use crate::work_offsets::WorkOffsets;
 use document::Document;
 use serde::Deserialize;
-use shared::config::{MotionConfig, TrackerConfig};
+use shared::config::{DeviationConfig, MotionConfig, TrackerConfig};
 use shared::io::{AXES, MOTOR_AXIS};
 use shared::motion::Machine;
 use std::collections::BTreeMap;
@@ -40,6 +41,8 @@ pub struct MachineFile {
     pub name: String,
     /// Parameters of the motion board.
     pub motion: MotionConfig,
+    /// Measured deviations of its axes, for the motion board.
+    pub deviations: Vec<DeviationConfig>,
     /// What follows the seam, if the machine has that.
     pub tracking: Option<TrackingUnit>,
     /// Names of its process outputs.
@@ -174,7 +177,8 @@ impl MachineFile {
             parameter,
         };
         // As the boards will build it.
-        Machine::build(&machine.motion).map_err(parameter)?;
+        let (mut board, _) = Machine::build(&machine.motion).map_err(parameter)?;
+        deviations::check(&machine.deviations, &mut board).map_err(mistake)?;
         if let Some(unit) = &machine.tracking {
             unit.board.build().map_err(parameter)?;
         }

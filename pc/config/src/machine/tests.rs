@@ -818,3 +818,92 @@ fn a_machine_may_be_a_list_of_joints_with_one_side() {
         assert!(error.contains("line") || message.contains(" of "), "{error}");
     }
 }
+
+/// The shipped machine, with tables of deviations behind its other tables.
+fn deviating(tables: &str) -> String {
+    format!("{SHIPPED}\n{tables}")
+}
+
+#[test]
+fn deviations_of_an_axis_are_those_of_all_its_motors() {
+    let tables = "[deviations.X.X]\nfrom = 0.0\nstep = 50.0\nvalues = [0.0, 0.002, -0.001]\n\
+                  [deviations.Z.X]\nfrom = -10\nstep = 100.0\nvalues = [0.0, 0.01]\n\
+                  [deviations.C.C]\nfrom = -90\nstep = 90.0\nvalues = [0.0, 0.001, 0.003]\n";
+    let machine = MachineFile::parse("m.toml", &deviating(tables)).unwrap();
+    let told: Vec<_> = machine
+        .deviations
+        .iter()
+        .map(|deviation| (deviation.motor, deviation.axis, deviation.from, deviation.step))
+        .collect();
+    let expected = [
+        (6, 5, -90.0, 90.0),
+        (0, 0, 0.0, 50.0),
+        (1, 0, 0.0, 50.0),
+        (3, 0, -10.0, 100.0),
+    ];
+    assert_eq!(told, expected);
+    assert_eq!(machine.deviations[1].values, [0.0, 0.002, -0.001]);
+    assert!(
+        MachineFile::parse("m.toml", SHIPPED)
+            .unwrap()
+            .deviations
+            .is_empty()
+    );
+}
+
+#[test]
+fn deviations_that_cannot_be_are_told_with_their_table_and_line() {
+    let table = |name: &str, rest: &str| format!("[deviations.{name}]\nfrom = 0.0\n{rest}\n");
+    let many: String = ["X1", "X2", "Y", "Z", "A", "B"]
+        .iter()
+        .flat_map(|of| {
+            ["X", "Y", "Z"].map(|along| table(&format!("{of}.{along}"), "step = 1\nvalues = [0, 0]"))
+        })
+        .collect();
+    let long = format!("step = 1\nvalues = {:?}", [0.0; 65]);
+    for (tables, said) in [
+        (
+            table("W.X", "step = 1\nvalues = [0, 0]"),
+            "deviations.W is of no motor",
+        ),
+        (
+            table("Y.U", "step = 1\nvalues = [0, 0]"),
+            "deviations.Y.U is along no axis",
+        ),
+        (
+            table("Y.X", "step = 0\nvalues = [0, 0]"),
+            "deviations.Y.X.step is 0, but must be above 0",
+        ),
+        (
+            table("Y.X", "step = 1\nvalues = [0]"),
+            "deviations.Y.X has 1 values, but must have from 2 to 64",
+        ),
+        (table("Y.X", &long), "deviations.Y.X has 65 values"),
+        (
+            table("Y.X", "step = 500\nvalues = [0, 1.2]"),
+            "deviations.Y.X.values is 1.2, but must be between",
+        ),
+        (
+            table("Y.X", "step = 50\nvalues = [0, 0.6]"),
+            "deviations.Y.X goes from 0 to 0.6 in one step, but may change by 0.5000",
+        ),
+        (
+            table("X.X", "step = 1\nvalues = [0, 0]") + &table("X2.X", "step = 1\nvalues = [0, 0]"),
+            "deviations.X2.X is of X2, which has another one",
+        ),
+        (many, "deviations are 18, but at most 16"),
+    ] {
+        let error = MachineFile::parse("m.toml", &deviating(&tables))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(said), "{error}");
+        let line: usize = error
+            .split("line ")
+            .nth(1)
+            .and_then(|rest| rest.split(':').next())
+            .unwrap()
+            .parse()
+            .unwrap();
+        assert!(line > SHIPPED.lines().count(), "{error}");
+    }
+}

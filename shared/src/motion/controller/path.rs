@@ -107,11 +107,7 @@ impl MotionController {
     fn follow(&mut self, output: &Output) {
         let Some(machine) = &self.machine else { return };
         self.axes = output.axes.position;
-        self.reference = MotorReference {
-            position: machine.motors(&output.axes.position),
-            velocity: machine.motor_rates(&output.axes.velocity),
-            acceleration: machine.motor_rates(&output.axes.acceleration),
-        };
+        self.reference = machine.motors(&output.axes);
     }
 
     fn go(&mut self, way: Way) {

@@ -2,7 +2,7 @@
 
 use super::MotionController;
 use super::loaded::LoadedPath;
-use crate::config::MotionConfig;
+use crate::config::{DeviationConfig, MotionConfig};
 use crate::geometry::PoseOffset;
 use crate::io::{AXES, Bits, MOTOR_AXIS, PROCESS_INPUTS};
 use crate::kinematics::AXIS_UNIT;
@@ -102,6 +102,7 @@ impl MotionController {
             Request::Status => return Response::MotionStatus(self.status(unsent)),
             Request::Inputs => return Response::Inputs(self.inputs),
             Request::ConfigureMotion(config) => self.configure(config),
+            Request::Compensate(deviation) => self.compensate(deviation),
             Request::Home => self.start_homing(),
             Request::Disable => self.disable(),
             Request::Reset => self.reset(),
@@ -164,6 +165,14 @@ impl MotionController {
         // A path was planned for the machine it was loaded for.
         self.path = LoadedPath::NONE;
         Ok(())
+    }
+
+    fn compensate(&mut self, deviation: &DeviationConfig) -> Result<(), Refusal> {
+        if self.state != State::Off {
+            return Err(Refusal::WrongState { state: self.state });
+        }
+        let machine = self.machine.as_mut().ok_or(Refusal::NotConfigured)?;
+        machine.compensate(deviation).map_err(Refusal::Parameter)
     }
 
     fn start_homing(&mut self) -> Result<(), Refusal> {

@@ -52,6 +52,7 @@ impl<const KNOTS: usize> TrackerController<KNOTS> {
             Request::Hello { .. }
             | Request::Subscribe { .. }
             | Request::ConfigureMotion(_)
+            | Request::Compensate(_)
             | Request::PathStatesTo { .. }
             | Request::BeginPath { .. }
             | Request::LoadElements { .. }
