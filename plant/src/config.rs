@@ -13,6 +13,9 @@ pub const MODES: usize = 3;
 /// Most bodies that the axes touch.
 pub const BODIES: usize = 8;
 
+/// Most errors of geometry.
+pub const ERRORS: usize = 24;
+
 /// Most bytes of a [`PlantConfig`] in postcard, as an emulated board reads it.
 pub const LONGEST: usize = 4096;
 
@@ -23,6 +26,8 @@ pub struct PlantConfig {
     pub motors: [Option<MotorConfig>; MOTORS],
     /// In the order of [`shared::io::SLIDE_NAMES`].
     pub slides: [Option<SlideConfig>; SLIDES],
+    /// Errors of its geometry.
+    pub geometry: Vec<GeometryConfig, ERRORS>,
     /// What the axes touch; without it every input of the process is on, as if the process always answered.
     pub touch: Option<TouchConfig>,
     /// Start of all noise.
@@ -47,6 +52,20 @@ pub struct BodyConfig {
     pub from: [f64; 3],
     /// Its upper one.
     pub to: [f64; 3],
+}
+
+/// By how much what a motor moves is beside its place, as another axis or its own moves; its grating does not see it. Of another axis
+/// the slope is squareness, and the wave straightness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GeometryConfig {
+    /// As in [`shared::io::MOTOR_NAMES`].
+    pub motor: u8,
+    /// As in [`shared::io::AXIS_NAMES`].
+    pub axis: u8,
+    /// Error for each unit of the axis, from its zero.
+    pub slope: f64,
+    /// Error over the axis.
+    pub wave: Wave,
 }
 
 /// One motor: its drive, what it moves, its grating.

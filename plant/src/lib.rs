@@ -9,6 +9,7 @@
 
 mod config;
 mod drive;
+mod geometry;
 mod grating;
 mod motion;
 mod motor;
@@ -17,8 +18,8 @@ mod slides;
 mod touch;
 
 pub use config::{
-    BODIES, BodyConfig, DriveConfig, GratingConfig, LONGEST, MODES, MechanicsConfig, ModeConfig, MotorConfig,
-    PlantConfig, SlideConfig, TouchConfig, Wave,
+    BODIES, BodyConfig, DriveConfig, ERRORS, GeometryConfig, GratingConfig, LONGEST, MODES, MechanicsConfig,
+    ModeConfig, MotorConfig, PlantConfig, SlideConfig, TouchConfig, Wave,
 };
 pub use drive::Drive;
 pub use grating::{Grating, GratingFault, Reading};

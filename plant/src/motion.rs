@@ -1,7 +1,9 @@
 //! What a motion board is wired to: the servo axes of a machine, and its beams.
 
-use crate::config::{PlantConfig, TouchConfig};
+use crate::config::{ERRORS, GeometryConfig, PlantConfig, TouchConfig};
+use crate::geometry::axes;
 use crate::motor::RunningMotor;
+use heapless::Vec;
 use shared::io::{
     Bits, Command, DacCode, Feedback, MOTOR_AXIS, MOTORS, MotionCommand, MotionFeedback, PROCESS_INPUTS,
     SIDES,
@@ -20,6 +22,7 @@ pub struct MotionPlant {
     power: [f64; SIDES],
     /// Their power, regardless of commands.
     stuck: [Option<DacCode>; SIDES],
+    geometry: Vec<GeometryConfig, ERRORS>,
     touch: Option<TouchConfig>,
 }
 
@@ -35,6 +38,7 @@ impl MotionPlant {
             motors: core::array::from_fn(motor),
             power: [0.0; SIDES],
             stuck: [None; SIDES],
+            geometry: config.geometry.clone(),
             touch: config.touch.clone(),
         }
     }
@@ -78,18 +82,29 @@ impl MotionPlant {
             feedback.limit_plus.set(i, reading.limit_plus);
         }
         if let Some(touch) = &self.touch {
-            let positions = self
-                .motors
-                .each_ref()
-                .map(|motor| motor.as_ref().map(RunningMotor::position));
-            feedback.process = touch.read(feedback.process, &positions);
+            feedback.process = touch.read(feedback.process, &axes(&self.positions()));
         }
         feedback
     }
 
-    /// True positions of the loads (mm, rad), at the end of the last tick.
+    /// True positions of what the motors move (mm, rad), at the end of the last tick.
     pub fn truth(&self) -> [f64; MOTORS] {
-        core::array::from_fn(|i| self.motors[i].as_ref().map_or(0.0, RunningMotor::position))
+        self.positions().map(Option::unwrap_or_default)
+    }
+
+    /// The same, of the motors that are there.
+    fn positions(&self) -> [Option<f64>; MOTORS] {
+        let mut positions = self
+            .motors
+            .each_ref()
+            .map(|motor| motor.as_ref().map(RunningMotor::position));
+        if !self.geometry.is_empty() {
+            let axes = axes(&positions);
+            for error in &self.geometry {
+                error.add(&axes, &mut positions);
+            }
+        }
+        positions
     }
 
     /// Beams that are on: those whose source gives power.

@@ -1,6 +1,7 @@
 //! The shipped machines behind a motion board.
 
-use plant::{BodyConfig, MotionPlant, TouchConfig};
+use core::f64::consts::PI;
+use plant::{BodyConfig, GeometryConfig, MotionPlant, TouchConfig, Wave};
 use plant_file::{DEFAULT_MACHINE, PlantFile, names};
 use shared::io::{Bits, DacCode, MOTORS, MotionCommand, MotionFeedback, PROCESS_INPUTS, SIDES};
 use shared::kinematics::KinematicsConfig;
@@ -226,4 +227,37 @@ fn an_input_is_on_while_the_axes_are_inside_what_they_touch() {
     (touch.bodies[0].from[1], touch.bodies[0].to[1]) = (at[2] + 1.0, at[2] + 2.0);
     let mut plant = beside.motion();
     assert!((0..20_000).all(|_| !plant.advance(&creep).process.get(1)));
+}
+
+#[test]
+fn errors_of_geometry_move_the_tool_but_no_grating() {
+    let straight = shipped(DEFAULT_MACHINE);
+    let mut bent = straight.clone();
+    let wave = Wave {
+        amplitude: 0.02,
+        period: 30.0,
+    };
+    let error = |motor, axis, slope, wave| GeometryConfig {
+        motor,
+        axis,
+        slope,
+        wave,
+    };
+    // Z over X, and A over Y, in degrees.
+    bent.plant.geometry = [error(3, 0, 1e-4, wave), error(4, 1, 1e-3, Wave::default())]
+        .into_iter()
+        .collect();
+    let (mut straight, mut bent) = (straight.motion(), bent.motion());
+    let command = command([0.1; MOTORS]);
+    for _ in 0..50 {
+        assert_eq!(run(&mut straight, &command, 40), run(&mut bent, &command, 40));
+        let (at, off) = (straight.truth(), bent.truth());
+        let x = (at[0] + at[1]) / 2.0;
+        let z = 1e-4 * x + 0.02 * (2.0 * PI * x / 30.0).sin();
+        let a = (1e-3 * at[2]).to_radians();
+        for motor in 0..MOTORS {
+            let expected = [0.0, 0.0, 0.0, z, a, 0.0, 0.0][motor];
+            assert!((off[motor] - at[motor] - expected).abs() < 1e-12, "motor {motor}");
+        }
+    }
 }

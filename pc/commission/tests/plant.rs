@@ -61,6 +61,7 @@ impl Bench {
         let wired = PlantConfig {
             motors,
             slides: [const { None }; SLIDES],
+            geometry: Default::default(),
             touch: None,
             seed: 7,
         };

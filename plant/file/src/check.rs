@@ -3,7 +3,7 @@
 use crate::PlantFile;
 use crate::read::Mistake;
 use plant::{DriveConfig, GratingConfig, MechanicsConfig, ModeConfig, SlideConfig, TouchConfig, Wave};
-use shared::io::{MOTOR_NAMES, PROCESS_INPUTS, SLIDE_NAMES};
+use shared::io::{AXIS_NAMES, MOTOR_NAMES, PROCESS_INPUTS, SLIDE_NAMES};
 
 /// Longest dead times of the models \[s\].
 const DRIVE_DEAD_TIME: f64 = 2e-3;
@@ -58,6 +58,12 @@ pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
         if let Some(config) = config {
             slide(&format!("slides.{name}"), config)?;
         }
+    }
+    for error in &file.plant.geometry {
+        let motor = MOTOR_NAMES[usize::from(error.motor)];
+        let key = format!("geometry.{motor}.{}", AXIS_NAMES[usize::from(error.axis)]);
+        all(&key, &[("slope", error.slope, BeWithin(-0.01, 0.01))])?;
+        wave(&format!("{key}.wave"), &error.wave)?;
     }
     if let Some(config) = &file.plant.touch {
         touch(config)?;

@@ -2,9 +2,9 @@
 
 use crate::{CameraMount, PlantFile, check};
 use config::toml_file::{self, TomlError};
-use plant::{MotorConfig, PlantConfig, SlideConfig, TouchConfig};
+use plant::{ERRORS, GeometryConfig, MotorConfig, PlantConfig, SlideConfig, TouchConfig, Wave};
 use serde::Deserialize;
-use shared::io::{MOTOR_NAMES, SLIDE_NAMES};
+use shared::io::{AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, SLIDE_NAMES};
 use std::collections::BTreeMap;
 use std::path::Path;
 use thiserror::Error;
@@ -53,7 +53,20 @@ struct Document {
     slides: BTreeMap<String, SlideConfig>,
     #[serde(default)]
     cameras: BTreeMap<String, CameraMount>,
+    /// By what is beside its place, and by the axis along which it is.
+    #[serde(default)]
+    geometry: BTreeMap<String, BTreeMap<String, GeometryError>>,
     touch: Option<TouchConfig>,
+}
+
+/// An error of geometry.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GeometryError {
+    #[serde(default)]
+    slope: f64,
+    #[serde(default)]
+    wave: Wave,
 }
 
 fn first() -> u32 {
@@ -87,10 +100,12 @@ impl PlantFile {
         let motors = in_order("motors", document.motors, MOTOR_NAMES).map_err(mistake)?;
         let slides = in_order("slides", document.slides, SLIDE_NAMES).map_err(mistake)?;
         let cameras = in_order("cameras", document.cameras, CAMERA_NAMES).map_err(mistake)?;
+        let geometry = geometry(&document.geometry, &motors).map_err(mistake)?;
         let plant = PlantFile {
             plant: PlantConfig {
                 motors,
                 slides,
+                geometry: geometry.into_iter().collect(),
                 touch: document.touch,
                 seed: document.seed,
             },
@@ -118,4 +133,37 @@ fn in_order<T, const N: usize>(
         )),
         None => Ok(found),
     }
+}
+
+/// Errors of geometry by motors; one of an axis is that of all its motors.
+fn geometry(
+    errors: &BTreeMap<String, BTreeMap<String, GeometryError>>,
+    motors: &[Option<MotorConfig>],
+) -> Result<Vec<GeometryConfig>, Mistake> {
+    let mut all = Vec::new();
+    for (of, by_axis) in errors {
+        for (along, error) in by_axis {
+            let key = format!("geometry.{of}.{along}");
+            let named = |motor: &usize| MOTOR_NAMES[*motor] == of || AXIS_NAMES[MOTOR_AXIS[*motor]] == of;
+            let motors: Vec<usize> = (0..motors.len())
+                .filter(|motor| motors[*motor].is_some())
+                .filter(named)
+                .collect();
+            let axis = AXIS_NAMES.iter().position(|name| name == along);
+            let (false, Some(axis)) = (motors.is_empty(), axis) else {
+                return Err((key, "names a motor or an axis that is not there".to_owned()));
+            };
+            all.extend(motors.into_iter().map(|motor| GeometryConfig {
+                motor: motor as u8,
+                axis: axis as u8,
+                slope: error.slope,
+                wave: error.wave,
+            }));
+        }
+    }
+    if all.len() > ERRORS {
+        let what = format!("are {}, at most {ERRORS} may be, one for each motor", all.len());
+        return Err(("geometry".to_owned(), what));
+    }
+    Ok(all)
 }

@@ -122,6 +122,16 @@ fn mistakes_are_named_with_file_line_and_value() {
             "[cameras.3]\n[slides.U1]",
             "cameras.3 is not known: there are 1, 2",
         ),
+        (
+            "[slides.U1]",
+            "[geometry.Z.U]\nslope = 1e-5\n[slides.U1]",
+            "geometry.Z.U names a motor or an axis that is not there",
+        ),
+        (
+            "[slides.U1]",
+            "[geometry.Z.X]\nslope = 0.5\n[slides.U1]",
+            "geometry.Z.X.slope = 0.5 must be from -0.01 to 0.01",
+        ),
     ] {
         let error = with(line, by).expect_err(by).to_string();
         assert!(
@@ -179,4 +189,20 @@ fn a_bad_machine_is_a_usual_one_with_a_defect() {
         seen.insert((motor, what));
     }
     assert_eq!(seen.len(), MOTOR_NAMES.len() * Defect::ALL.len());
+}
+
+#[test]
+fn errors_of_geometry_of_an_axis_are_those_of_all_its_motors() {
+    let file = with(
+        "[slides.U1]",
+        "[geometry.Z.X]\nslope = 2e-5\n[geometry.X.X]\nwave = { amplitude = 0.01, period = 500.0 }\n[slides.U1]",
+    )
+    .unwrap();
+    let errors: Vec<_> = file
+        .plant
+        .geometry
+        .iter()
+        .map(|error| (error.motor, error.axis, error.slope, error.wave.amplitude))
+        .collect();
+    assert_eq!(errors, [(0, 0, 0.0, 0.01), (1, 0, 0.0, 0.01), (3, 0, 2e-5, 0.0)]);
 }
