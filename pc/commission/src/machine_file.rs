@@ -4,7 +4,7 @@
 use crate::design::Loop;
 use crate::excitations::least_kp;
 use crate::four_digits;
-use shared::config::MotionConfig;
+use shared::config::{DeviationConfig, MotionConfig};
 use shared::control::{FrictionConfig, NotchConfig};
 use shared::io::MOTOR_NAMES;
 use thiserror::Error;
@@ -19,6 +19,9 @@ pub enum WriteError {
     /// The motor is not in it.
     #[error("it has no table [motors.{0}]")]
     NoMotor(String),
+    /// Something else is called so.
+    #[error("its {0} is no table")]
+    NoTable(String),
     /// There is no gantry in it.
     #[error("it has no table [gantry]")]
     NoGantry,
@@ -101,6 +104,36 @@ fn rewrite_coupling(text: &str, factor: f64) -> Result<String, WriteError> {
             replace(gantry, key, four_digits(factor * before).into());
         }
     }
+    Ok(document.to_string())
+}
+
+/// The machine file `text` with a table of measured deviations of `of`, a motor or an axis, along `axis`.
+///
+/// # Errors
+/// It is no TOML.
+pub fn rewrite_deviation(
+    text: &str,
+    of: &str,
+    axis: &str,
+    deviation: &DeviationConfig,
+) -> Result<String, WriteError> {
+    let mut document: DocumentMut = text.parse()?;
+    let mut table = document.as_table_mut();
+    for name in ["deviations", of, axis] {
+        let mut inner = Table::new();
+        inner.set_implicit(true);
+        let item = table.entry(name).or_insert(Item::Table(inner));
+        table = item
+            .as_table_mut()
+            .ok_or_else(|| WriteError::NoTable(name.to_owned()))?;
+    }
+    table.set_implicit(false);
+    // To 0.01 µm, and 0.00001°.
+    let rounded = |value: &f32| (f64::from(*value) * 1e5).round() / 1e5;
+    let values: Array = deviation.values.iter().map(rounded).collect();
+    replace(table, "from", deviation.from.into());
+    replace(table, "step", deviation.step.into());
+    replace(table, "values", values.into());
     Ok(document.to_string())
 }
 

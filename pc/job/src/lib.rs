@@ -17,6 +17,7 @@ mod leading;
 mod marking;
 mod operator;
 mod planned;
+mod positioning;
 mod probing;
 mod recentring;
 mod run_in;
@@ -40,6 +41,7 @@ pub use images::{ImageCameras, Images, ImagesError, Sighting, SightingLog, Worke
 pub use joint::SeenSeam;
 pub use leading::LedLesson;
 pub use marking::{MarkRun, Marking, SeenMarks};
+pub use positioning::{NoTest, NotSeen, PlannedPositioning, PositioningTest, Rest};
 pub use probing::ProbeError;
 pub use run_record::{ByBoard, Recentred, RunRecord, TrackingRecord};
 pub use seam_lesson::{LessonOptions, SeamLesson, TaughtSeam};

@@ -8,6 +8,7 @@ mod joint;
 mod log;
 mod motor;
 mod plots;
+mod positioning;
 mod table;
 pub mod unwelded;
 
@@ -16,6 +17,7 @@ pub use dry_run::write_dry_run;
 pub use ended::{Ended, ended};
 pub use log::{LOG, LogColumns, LogWriter};
 pub use motor::write_motor;
+pub use positioning::write_positioning;
 
 use crate::unwelded::Unwelded;
 use evaluate::{JOINT_QUANTITIES, JointFigures, Load, SpeedShares, Switching};

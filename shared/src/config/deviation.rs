@@ -29,3 +29,40 @@ pub struct DeviationConfig {
     /// Actual place less target at each point (mm or degrees, of the motor).
     pub values: Vec<f32, DEVIATION_POINTS>,
 }
+
+impl DeviationConfig {
+    /// The deviation with the axis at `coordinate` (mm or degrees).
+    pub fn at(&self, coordinate: f64) -> f64 {
+        let [value, _] = smooth(&self.values, (coordinate - self.from) / self.step);
+        value
+    }
+}
+
+/// Value and slope of a curve through `values`, one apart from the next, at `place`: by Catmull and Rom's cubics, with one-sided
+/// differences at both ends, and as at the ends beyond them. There are two values at least.
+pub(crate) fn smooth(values: &[f32], place: f64) -> [f64; 2] {
+    let value = |point: usize| f64::from(values[point]);
+    let last = values.len() - 1;
+    // What is not a number stays at the first point.
+    if place.is_nan() || place <= 0.0 {
+        return [value(0), 0.0];
+    }
+    if place >= last as f64 {
+        return [value(last), 0.0];
+    }
+    let point = place as usize;
+    let t = place - point as f64;
+    let (p0, p1) = (value(point), value(point + 1));
+    let rise = p1 - p0;
+    let m0 = match point {
+        0 => rise,
+        _ => 0.5 * (p1 - value(point - 1)),
+    };
+    let m1 = if point + 1 == last {
+        rise
+    } else {
+        0.5 * (value(point + 2) - p0)
+    };
+    let (b, c) = (3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise);
+    [p0 + t * (m0 + t * (b + t * c)), m0 + t * (2.0 * b + t * 3.0 * c)]
+}

@@ -7,6 +7,7 @@ mod deviation;
 mod motion;
 mod tracker;
 
+pub(crate) use deviation::smooth;
 pub use deviation::{DEVIATION_POINTS, DEVIATIONS, DeviationConfig, MOST_DEVIATION, STEEPEST_DEVIATION};
 pub use motion::{
     AnalogConfig, BeamConfig, MotionConfig, OutputConfig, ProcessInputConfig, ProcessIo, ReadbackConfig,

@@ -1,6 +1,8 @@
 //! Error compensation: where each motor belongs so that the tool is where the axes say, from measured deviations.
 
-use crate::config::{DEVIATION_POINTS, DEVIATIONS, DeviationConfig, MOST_DEVIATION, STEEPEST_DEVIATION};
+use crate::config::{
+    DEVIATION_POINTS, DEVIATIONS, DeviationConfig, MOST_DEVIATION, STEEPEST_DEVIATION, smooth,
+};
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use crate::kinematics::AXIS_UNIT;
 use crate::parameter::{ParameterError, check, positive, within};
@@ -67,40 +69,11 @@ impl Table {
         })
     }
 
-    fn value(&self, point: usize) -> f64 {
-        f64::from(self.values[point])
-    }
-
-    /// By Catmull and Rom's cubics through the points, with one-sided differences at both ends.
-    fn at(&self, coordinate: f64) -> Deviation {
-        let last = self.values.len() - 1;
-        let place = (coordinate - self.from) * self.per_step;
-        // What is not a number stays at the first point.
-        if !(place > 0.0) || place >= last as f64 {
-            let end = if place > 0.0 { last } else { 0 };
-            return Deviation {
-                value: self.value(end),
-                slope: 0.0,
-            };
-        }
-        let point = place as usize;
-        let t = place - point as f64;
-        let (p0, p1) = (self.value(point), self.value(point + 1));
-        let rise = p1 - p0;
-        let m0 = if point == 0 {
-            rise
-        } else {
-            0.5 * (p1 - self.value(point - 1))
-        };
-        let m1 = if point + 1 == last {
-            rise
-        } else {
-            0.5 * (self.value(point + 2) - p0)
-        };
-        let (b, c) = (3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise);
+    fn at(&self, axes: &[f64; AXES]) -> Deviation {
+        let [value, slope] = smooth(&self.values, (axes[self.axis] - self.from) * self.per_step);
         Deviation {
-            value: p0 + t * (m0 + t * (b + t * c)),
-            slope: (m0 + t * (2.0 * b + t * 3.0 * c)) * self.per_step,
+            value,
+            slope: slope * self.per_step,
         }
     }
 }
@@ -133,14 +106,14 @@ impl Compensation {
     /// Motors, which would be at `motors`, to where the tool is where the `axes` say.
     pub fn place(&self, axes: &[f64; AXES], motors: &mut [f64; MOTORS]) {
         for table in &self.tables {
-            motors[table.motor] -= table.at(axes[table.axis]).value;
+            motors[table.motor] -= table.at(axes).value;
         }
     }
 
     /// The same of velocities or accelerations `rates`, at `axes`. Of an acceleration v²·d″ is left out, 10⁻⁴ of it.
     pub fn rate(&self, axes: &[f64; AXES], rates: &[f64; AXES], motors: &mut [f64; MOTORS]) {
         for table in &self.tables {
-            motors[table.motor] -= table.at(axes[table.axis]).slope * rates[table.axis];
+            motors[table.motor] -= table.at(axes).slope * rates[table.axis];
         }
     }
 
@@ -164,7 +137,7 @@ impl Compensation {
     pub fn actual(&self, motors: &[f64; MOTORS], axes: &[f64; AXES]) -> [f64; MOTORS] {
         let mut actual = *motors;
         for table in &self.tables {
-            actual[table.motor] += table.at(axes[table.axis]).value;
+            actual[table.motor] += table.at(axes).value;
         }
         actual
     }

@@ -1,5 +1,5 @@
 //! Machines drawn at random, on simulated boards: how each welds the shipped job of its kind with the shipped gains, and how
-//! when it was commissioned.
+//! when it was commissioned, and the positions of its linear axes measured.
 
 use super::{bad, bounded, markdown};
 use crate::cargo::root;
@@ -102,6 +102,44 @@ impl Draws {
         ])
     }
 
+    /// Axes whose positions are measured, and of what.
+    fn measured(&self) -> Vec<(&'static str, &'static str)> {
+        let x = if self.machine == plant_file::DEFAULT_MACHINE {
+            // Both gratings of the gantry.
+            ("X", "X1,X2")
+        } else {
+            ("X", "X")
+        };
+        let all = [x, ("Y", "Y"), ("Z", "Z")];
+        // The pipe welder has no Y.
+        let fitted = |axis: &&(&str, &str)| self.machine != "pipe-welder" || axis.0 != "Y";
+        all.iter().filter(fitted).copied().collect()
+    }
+
+    /// Words that measure the positions of `axis`, and put them into the `commissioned` file.
+    fn positioning(&self, commissioned: &Path, axis: &str, of: &str, seed: u32) -> Vec<String> {
+        let file = commissioned.display().to_string();
+        words(&[
+            "positioning",
+            "--machine",
+            &file,
+            "--axis",
+            axis,
+            "--of",
+            of,
+            "--runs",
+            "1",
+            "--dwell",
+            "0.2",
+            "--plant",
+            &format!("draw:{}:{seed}", self.quality),
+            "--boards",
+            "simulated",
+            "-o",
+            &file,
+        ])
+    }
+
     fn shipped(&self) -> PathBuf {
         root().join("machines").join(&self.machine).with_extension("toml")
     }
@@ -119,6 +157,12 @@ impl Draws {
             .filter(|line| line.contains(LEFT))
             .map(str::to_owned)
             .collect();
+        for (axis, of) in self.measured() {
+            if commissioned.exists() {
+                let arguments = self.positioning(&commissioned, axis, of, seed);
+                bounded::run(program, &arguments, folder, "positioning.console", LIMIT)?;
+            }
+        }
         // It homes, and each motor goes to and fro, with loops that are too slow to ring.
         let moved = commissioned.exists();
         let after = if commissioned.exists() {

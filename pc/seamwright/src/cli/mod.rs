@@ -11,6 +11,7 @@ mod explain;
 mod jog;
 mod measure;
 mod plan;
+mod positioning;
 mod probe;
 mod teach;
 mod teach_places;
@@ -50,6 +51,7 @@ enum Command {
     Jog(jog::JogCommand),
     Measure(measure::Measure),
     Plan(plan::Plan),
+    Positioning(positioning::PositioningCommand),
     Probe(probe::Probe),
     Teach(teach::Teach),
     Weld(weld::Weld),
@@ -67,6 +69,7 @@ impl Cli {
             Command::Jog(command) => command.run(),
             Command::Measure(command) => command.run(),
             Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),
+            Command::Positioning(command) => command.run(),
             Command::Probe(command) => command.run(),
             Command::Teach(command) => command.run(),
             Command::Weld(command) => command.run(),

@@ -1,0 +1,214 @@
+//! A test of positioning accuracy: an axis goes to targets from both sides and rests at each (ISO 230-2).
+
+use cam::path::{PathError, Planner};
+use config::machine::MachineFile;
+use host_link::geometry::MachineGeometry;
+use host_link::record::{MachinePosition, Recorded};
+use nc::{NcError, Options, Program, interpret};
+use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTORS};
+use shared::kinematics::AXIS_UNIT;
+use std::fmt::Write;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// Room between the outer targets and the ends of travel (mm or degrees).
+const ROOM: f64 = 5.0;
+/// So far beyond the outer targets the axis turns round (mm or degrees).
+const BEYOND: f64 = 2.0;
+/// At a target, where the board sees the axis so near to it (mm or degrees).
+const THERE: f64 = 0.05;
+/// Part of a rest that is not counted, in which the axis settles.
+const SETTLING: f64 = 0.5;
+
+/// What to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositioningTest {
+    /// Index of the axis.
+    pub axis: usize,
+    /// Targets along it.
+    pub targets: usize,
+    /// How often to go there and back.
+    pub runs: usize,
+    /// How long to rest at each target \[s\].
+    pub dwell_s: f64,
+}
+
+/// A test of an axis of a machine.
+#[derive(Clone, Debug)]
+pub struct PlannedPositioning {
+    /// From target to target.
+    pub program: Program,
+    /// What was asked for.
+    pub test: PositioningTest,
+    /// Where it rests, in order, and whether it comes there from above (mm or degrees).
+    pub rests: Vec<(f64, bool)>,
+}
+
+/// Why there is no test.
+#[derive(Debug, Error)]
+pub enum NoTest {
+    /// The axis is missing.
+    #[error("the machine has no axis {0}")]
+    NoAxis(&'static str),
+    /// There is no room.
+    #[error("the travel of {axis} is {travel}, too short for targets that are {ROOM} from its ends")]
+    NoRoom {
+        /// The axis.
+        axis: &'static str,
+        /// Its travel (mm or degrees).
+        travel: f64,
+    },
+    /// Its program makes no sense.
+    #[error(transparent)]
+    Program(#[from] NcError),
+    /// The machine cannot follow it.
+    #[error(transparent)]
+    Path(#[from] PathError),
+}
+
+/// A test whose rests are not all in the record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("the axis was seen at {seen} of {wanted} targets: telemetry is missing; repeat the test")]
+pub struct NotSeen {
+    /// Rests that were seen.
+    seen: usize,
+    /// All.
+    wanted: usize,
+}
+
+impl PositioningTest {
+    /// Plans it over the whole travel, with the other axes at their reference marks.
+    ///
+    /// # Errors
+    /// Why the machine cannot do it.
+    pub fn plan(self, machine: &MachineFile, planner: &Planner) -> Result<PlannedPositioning, NoTest> {
+        let name = AXIS_NAMES[self.axis];
+        let limits = machine.motion.axes[self.axis]
+            .as_ref()
+            .ok_or(NoTest::NoAxis(name))?;
+        let (first, last) = (limits.travel_min + ROOM, limits.travel_max - ROOM);
+        if first + ROOM > last {
+            return Err(NoTest::NoRoom {
+                axis: name,
+                travel: limits.travel_max - limits.travel_min,
+            });
+        }
+        let step = (last - first) / (self.targets - 1) as f64;
+        let there: Vec<_> = (0..self.targets).map(|k| first + step * k as f64).collect();
+        let (mut text, mut rests) = ("G21 G90 G94\n".to_owned(), Vec::new());
+        // A text is always written.
+        let mut go = |place: f64, dwell: f64| {
+            let _ = writeln!(text, "G53 G0 {name}{place:.6}");
+            if dwell > 0.0 {
+                let _ = writeln!(text, "G4 P{dwell}");
+            }
+        };
+        for _ in 0..self.runs {
+            go(first - BEYOND, 0.0);
+            for target in &there {
+                go(*target, self.dwell_s);
+                rests.push((*target, false));
+            }
+            go(last + BEYOND, 0.0);
+            for target in there.iter().rev() {
+                go(*target, self.dwell_s);
+                rests.push((*target, true));
+            }
+        }
+        text.push_str("M2\n");
+        let from = machine.homed_axes();
+        let options = Options {
+            setup: Arc::new(planner.setup(&from)),
+            ..Options::default()
+        };
+        let program = interpret(&text, options)?;
+        planner.program(&program, &from, None)?;
+        Ok(PlannedPositioning {
+            program,
+            test: self,
+            rests,
+        })
+    }
+}
+
+impl PlannedPositioning {
+    /// By how much axes and motors were beside their places at every rest; `None` where the record has no truth, as on a real machine.
+    ///
+    /// # Errors
+    /// A rest is not in the record.
+    pub fn seen(&self, geometry: &MachineGeometry, record: &Recorded) -> Result<Option<Vec<Rest>>, NotSeen> {
+        let (mut rests, mut next) = (Vec::new(), self.rests.iter().peekable());
+        let (mut resting, mut begun) = (Vec::<Rest>::new(), false);
+        for sample in record.motion().iter() {
+            let Some((target, backwards)) = next.peek() else {
+                break;
+            };
+            begun |= sample.state.on_path();
+            let told = in_units(&sample.axes);
+            if begun && !sample.state.on_path() && (told[self.test.axis] - target).abs() < THERE {
+                let position = MachinePosition::of(&sample);
+                let MachinePosition::Motors(motors) = position else {
+                    return Ok(None);
+                };
+                let mut aimed = told;
+                aimed[self.test.axis] = *target;
+                let actual = in_units(&geometry.axes(&position));
+                resting.push(Rest {
+                    target: *target,
+                    backwards: *backwards,
+                    axes: core::array::from_fn(|axis| actual[axis] - aimed[axis]),
+                    motors: core::array::from_fn(|motor| {
+                        let axis = MOTOR_AXIS[motor];
+                        motors[motor] / AXIS_UNIT[axis] - aimed[axis]
+                    }),
+                });
+            } else if !resting.is_empty() {
+                rests.push(Rest::mean(&resting));
+                resting.clear();
+                next.next();
+            }
+        }
+        if !resting.is_empty() {
+            rests.push(Rest::mean(&resting));
+        }
+        if rests.len() < self.rests.len() {
+            return Err(NotSeen {
+                seen: rests.len(),
+                wanted: self.rests.len(),
+            });
+        }
+        Ok(Some(rests))
+    }
+}
+
+/// A rest at a target, in the units of machine files.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    /// Where the axis was sent.
+    pub target: f64,
+    /// It came from above.
+    pub backwards: bool,
+    /// By how much each axis was beside its place: the one that is tested beside the target, the others beside what the board said.
+    pub axes: [f64; AXES],
+    /// The same of what each motor moves; of two on an axis, with half of the square offset.
+    pub motors: [f64; MOTORS],
+}
+
+impl Rest {
+    /// Of its samples, once settled.
+    fn mean(samples: &[Self]) -> Self {
+        let settled = &samples[(SETTLING * samples.len() as f64) as usize..];
+        let count = settled.len() as f64;
+        let mean = |of: &dyn Fn(&Self) -> f64| settled.iter().map(of).sum::<f64>() / count;
+        Self {
+            axes: core::array::from_fn(|axis| mean(&|rest| rest.axes[axis])),
+            motors: core::array::from_fn(|motor| mean(&|rest| rest.motors[motor])),
+            ..samples[0]
+        }
+    }
+}
+
+/// As machine files have them (mm, degrees).
+fn in_units(axes: &[f64; AXES]) -> [f64; AXES] {
+    core::array::from_fn(|axis| axes[axis] / AXIS_UNIT[axis])
+}
