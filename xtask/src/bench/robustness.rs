@@ -130,7 +130,7 @@ impl Draws {
             "--runs",
             "1",
             "--dwell",
-            "0.2",
+            "0.5",
             "--plant",
             &format!("draw:{}:{seed}", self.quality),
             "--boards",
