@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 pub const DEVIATIONS: usize = 16;
 /// Most points of a table.
 pub const DEVIATION_POINTS: usize = 64;
+/// Most points of all tables of a machine.
+pub const DEVIATION_POINTS_IN_ALL: usize = 640;
 /// Largest deviation (mm or degrees): where there is more, something is built or measured wrong.
 pub const MOST_DEVIATION: f64 = 1.0;
 /// Steepest change of one along its axis: 10 mm/m.
@@ -33,16 +35,16 @@ pub struct DeviationConfig {
 impl DeviationConfig {
     /// The deviation with the axis at `coordinate` (mm or degrees).
     pub fn at(&self, coordinate: f64) -> f64 {
-        let [value, _] = smooth(&self.values, (coordinate - self.from) / self.step);
+        let place = (coordinate - self.from) / self.step;
+        let [value, _] = smooth(self.values.len(), |point| f64::from(self.values[point]), place);
         value
     }
 }
 
-/// Value and slope of a curve through `values`, one apart from the next, at `place`: by Catmull and Rom's cubics, with one-sided
-/// differences at both ends, and as at the ends beyond them. There are two values at least.
-pub(crate) fn smooth(values: &[f32], place: f64) -> [f64; 2] {
-    let value = |point: usize| f64::from(values[point]);
-    let last = values.len() - 1;
+/// Value and slope at `place` of a curve through so many `points`, two at least, one apart from the next: by Catmull and Rom's cubics,
+/// with one-sided differences at both ends, and as at the ends beyond them.
+pub(crate) fn smooth(points: usize, value: impl Fn(usize) -> f64, place: f64) -> [f64; 2] {
+    let last = points - 1;
     // What is not a number stays at the first point.
     if place.is_nan() || place <= 0.0 {
         return [value(0), 0.0];

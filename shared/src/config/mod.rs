@@ -8,7 +8,10 @@ mod motion;
 mod tracker;
 
 pub(crate) use deviation::smooth;
-pub use deviation::{DEVIATION_POINTS, DEVIATIONS, DeviationConfig, MOST_DEVIATION, STEEPEST_DEVIATION};
+pub use deviation::{
+    DEVIATION_POINTS, DEVIATION_POINTS_IN_ALL, DEVIATIONS, DeviationConfig, MOST_DEVIATION,
+    STEEPEST_DEVIATION,
+};
 pub use motion::{
     AnalogConfig, BeamConfig, MotionConfig, OutputConfig, ProcessInputConfig, ProcessIo, ReadbackConfig,
 };

@@ -4,7 +4,8 @@ use super::Mistake;
 use crate::in_range;
 use serde::Deserialize;
 use shared::config::{
-    DEVIATION_POINTS, DEVIATIONS, DeviationConfig, MOST_DEVIATION, MotionConfig, STEEPEST_DEVIATION,
+    DEVIATION_POINTS, DEVIATION_POINTS_IN_ALL, DEVIATIONS, DeviationConfig, MOST_DEVIATION, MotionConfig,
+    STEEPEST_DEVIATION,
 };
 use shared::io::{AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES};
 use shared::motion::Machine;
@@ -59,6 +60,14 @@ pub(super) fn build(tables: &Tables, motion: &MotionConfig) -> Result<Vec<Deviat
         let what = format!(
             "are {}, but at most {DEVIATIONS} may be, one for each motor",
             all.len()
+        );
+        return Err(unusable(key, &what));
+    }
+    let points: usize = all.iter().map(|table| table.values.len()).sum();
+    if points > DEVIATION_POINTS_IN_ALL {
+        let key = "deviations".to_owned();
+        let what = format!(
+            "have {points} values, but the board takes {DEVIATION_POINTS_IN_ALL}, each for every motor of its axis: choose longer steps"
         );
         return Err(unusable(key, &what));
     }

@@ -860,6 +860,17 @@ fn deviations_that_cannot_be_are_told_with_their_table_and_line() {
             ["X", "Y", "Z"].map(|along| table(&format!("{of}.{along}"), "step = 1\nvalues = [0, 0]"))
         })
         .collect();
+    let full: String = ["X", "Y", "Z", "A", "B"]
+        .iter()
+        .flat_map(|of| ["X", "Y"].map(|along| (of, along)))
+        .take(9)
+        .map(|(of, along)| {
+            table(
+                &format!("{of}.{along}"),
+                &format!("step = 1\nvalues = {:?}", [0.0; 64]),
+            )
+        })
+        .collect();
     let long = format!("step = 1\nvalues = {:?}", [0.0; 65]);
     for (tables, said) in [
         (
@@ -892,6 +903,7 @@ fn deviations_that_cannot_be_are_told_with_their_table_and_line() {
             "deviations.X2.X is of X2, which has another one",
         ),
         (many, "deviations are 18, but at most 16"),
+        (full, "deviations have 704 values, but the board takes 640"),
     ] {
         let error = MachineFile::parse("m.toml", &deviating(&tables))
             .unwrap_err()
