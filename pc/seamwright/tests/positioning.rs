@@ -120,6 +120,7 @@ fn scales_straightness_and_squareness_are_found_and_made_up_for() {
     let after = ranges(&said(&again, 0));
     assert_eq!((before.len(), after.len()), (4, 4));
     for (before, after) in before.iter().zip(&after) {
+        println!("{before} µm before, {after} after");
         assert!(
             *before > 10.0 && *after < 1.0,
             "{before} µm before, {after} after"
