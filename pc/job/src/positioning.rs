@@ -103,8 +103,8 @@ impl PositioningTest {
                 let _ = writeln!(text, "G4 P{dwell}");
             }
         };
+        go(first - BEYOND, 0.0);
         for _ in 0..self.runs {
-            go(first - BEYOND, 0.0);
             for target in &there {
                 go(*target, self.dwell_s);
                 rests.push((*target, false));
@@ -114,6 +114,7 @@ impl PositioningTest {
                 go(*target, self.dwell_s);
                 rests.push((*target, true));
             }
+            go(first - BEYOND, 0.0);
         }
         text.push_str("M2\n");
         let from = machine.homed_axes();

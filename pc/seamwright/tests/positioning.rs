@@ -245,3 +245,34 @@ fn what_cannot_be_tested_is_told() {
         assert_eq!(output.status.code(), Some(2), "{wrong:?}");
     }
 }
+
+#[test]
+fn every_axis_of_the_shipped_machines_is_tested() {
+    for (machine, axes) in [
+        ("dual-beam-gantry", "XYZABC"),
+        ("pipe-welder", "XZBC"),
+        ("ac-head", "XYZAC"),
+        ("wire-arc", "XYZABC"),
+        ("stir-gantry", "XYZBC"),
+    ] {
+        let machine = shipped(&format!("machines/{machine}.toml"));
+        for axis in axes.chars() {
+            let axis = axis.to_string();
+            let told = positioning(
+                &machine,
+                &[
+                    "--axis",
+                    &axis,
+                    "--targets",
+                    "5",
+                    "--runs",
+                    "1",
+                    "--within",
+                    "0.005",
+                ],
+            );
+            let told = said(&told, 0);
+            assert!(told.contains("reversal value B"), "{axis}: {told}");
+        }
+    }
+}

@@ -6,7 +6,7 @@ use crate::{JOBS, MACHINE, assert_held_weld_goes_on, shipped, shipped_seam, weld
 use config::machine::MachineFile;
 use host_link::boards::{Boards, LinkError};
 use host_link::pass_on;
-use shared::config::{MotionConfig, TrackerConfig};
+use shared::config::{DeviationConfig, MotionConfig, TrackerConfig};
 use shared::geometry::PoseOffset;
 use shared::io::SLIDES;
 use shared::protocol::{Datagram, Excitation, Excited, Request, Response, Role};
@@ -161,6 +161,8 @@ pub fn seldom() -> Vec<Request> {
     vec![
         Request::Status,
         Request::Inputs,
+        Request::Compensate(deviation(2, [0.0, 0.002, -0.001])),
+        Request::Compensate(deviation(9, [0.0, f32::NAN, 1e9])),
         Request::Home,
         Request::Disable,
         Request::Reset,
@@ -203,4 +205,15 @@ pub fn seldom() -> Vec<Request> {
 pub fn any<'a>(random: &mut Random, sessions: &'a [Session]) -> &'a Said {
     let session = random.of(sessions);
     random.of(&session.said)
+}
+
+/// Of a motor along X.
+fn deviation(motor: u8, values: [f32; 3]) -> DeviationConfig {
+    DeviationConfig {
+        axis: 0,
+        motor,
+        from: 0.0,
+        step: 50.0,
+        values: values.into_iter().collect(),
+    }
 }
