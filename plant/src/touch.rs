@@ -10,7 +10,7 @@ impl TouchConfig {
             let limits = body.from.into_iter().zip(body.to);
             axes.iter()
                 .zip(limits)
-                .all(|(at, (from, to))| (from..=to).contains(&*at))
+                .all(|(at, (from, to))| (from..=to).contains(at))
         });
         process.set(usize::from(self.input).wrapping_sub(1), touches);
         process

@@ -57,6 +57,9 @@ fn ranges(said: &str) -> Vec<f64> {
     .collect()
 }
 
+/// A deviation \[mm\] of X \[mm\].
+type Deviation<'a> = &'a dyn Fn(f64) -> f64;
+
 /// The gantry with gratings that are too long or too short, Y not square to X and not straight, and Z neither: its plant file.
 fn crooked(folder: &Path) -> PathBuf {
     let mut text =
@@ -99,7 +102,7 @@ fn scales_straightness_and_squareness_are_found_and_made_up_for() {
     // By the plant file: X from its mark, the others as X goes.
     let mark = 20.0;
     let wave = |amplitude: f64, period: f64, x: f64| amplitude * (std::f64::consts::TAU * x / period).sin();
-    let truth: [(usize, &str, &dyn Fn(f64) -> f64); 4] = [
+    let truth: [(usize, &str, Deviation); 4] = [
         (0, "X1", &|x| -10e-6 * x),
         (1, "X2", &|x| 15e-6 * x),
         (2, "Y", &|x| -2e-5 * x + wave(0.004, 1600.0, x)),

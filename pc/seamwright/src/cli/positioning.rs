@@ -96,6 +96,9 @@ struct Of {
     motor: usize,
 }
 
+/// The approaches by what they show.
+type Seen = Vec<(Of, Vec<Approach>)>;
+
 impl Of {
     /// Units of its deviations, as tables and messages have them, and how many of the first are in one of the machine file.
     fn units(self) -> (&'static str, &'static str, f64) {
@@ -230,12 +233,7 @@ impl PositioningCommand {
     }
 
     /// On the boards; an exit code where the job ended before, or where nothing was seen that a table could be made of.
-    fn test(
-        &self,
-        machine: &MachineFile,
-        axis: usize,
-        all: &[Of],
-    ) -> anyhow::Result<Result<Vec<(Of, Vec<Approach>)>, ExitCode>> {
+    fn test(&self, machine: &MachineFile, axis: usize, all: &[Of]) -> anyhow::Result<Result<Seen, ExitCode>> {
         let planner = Planner::build(machine).with_context(|| self.machine.display().to_string())?;
         let test = PositioningTest {
             axis,
