@@ -1,11 +1,12 @@
 //! Error compensation: where each motor belongs so that the tool is where the axes say, from measured deviations.
 
+use super::segment::MotorReference;
 use crate::config::{
     DEVIATION_POINTS, DEVIATION_POINTS_IN_ALL, DEVIATIONS, DeviationConfig, MOST_DEVIATION,
     STEEPEST_DEVIATION, smooth,
 };
 use crate::io::{AXES, MOTOR_AXIS, MOTOR_NAMES, MOTORS};
-use crate::kinematics::AXIS_UNIT;
+use crate::kinematics::{AXIS_UNIT, AxisMotion};
 use crate::parameter::{ParameterError, check, positive, within};
 use heapless::Vec;
 
@@ -104,17 +105,18 @@ impl Compensation {
         })
     }
 
-    /// Motors, which would be at `motors`, to where the tool is where the `axes` say.
-    pub fn place(&self, axes: &[f64; AXES], motors: &mut [f64; MOTORS]) {
-        for deviation in self.at(axes) {
-            motors[deviation.motor] -= deviation.value;
-        }
-    }
-
-    /// The same of velocities or accelerations `rates`, at `axes`. Of an acceleration v²·d″ is left out, 10⁻⁴ of it.
-    pub fn rate(&self, axes: &[f64; AXES], rates: &[f64; AXES], motors: &mut [f64; MOTORS]) {
-        for deviation in self.at(axes) {
-            motors[deviation.motor] -= deviation.slope * rates[deviation.axis];
+    /// Motors, which would follow `reference`, to where the tool is where the `axes` say. Of accelerations v²·d″ is left out, 10⁻⁴ of them.
+    pub fn correct(&self, axes: &AxisMotion, reference: &mut MotorReference) {
+        for deviation in self.at(&axes.position) {
+            let Deviation {
+                axis,
+                motor,
+                value,
+                slope,
+            } = deviation;
+            reference.position[motor] -= value;
+            reference.velocity[motor] -= slope * axes.velocity[axis];
+            reference.acceleration[motor] -= slope * axes.acceleration[axis];
         }
     }
 

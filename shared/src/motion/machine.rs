@@ -98,10 +98,7 @@ impl Machine {
             velocity: self.rates(&axes.velocity),
             acceleration: self.rates(&axes.acceleration),
         };
-        let compensation = &self.compensation;
-        compensation.place(&axes.position, &mut reference.position);
-        compensation.rate(&axes.position, &axes.velocity, &mut reference.velocity);
-        compensation.rate(&axes.position, &axes.acceleration, &mut reference.acceleration);
+        self.compensation.correct(axes, &mut reference);
         reference
     }
 
