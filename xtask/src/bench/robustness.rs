@@ -157,21 +157,19 @@ impl Draws {
             .filter(|line| line.contains(LEFT))
             .map(str::to_owned)
             .collect();
-        for (axis, of) in self.measured() {
-            if commissioned.exists() {
-                let arguments = self.positioning(&commissioned, axis, of, seed);
-                bounded::run(program, &arguments, folder, "positioning.console", LIMIT)?;
-            }
-        }
         // It homes, and each motor goes to and fro, with loops that are too slow to ring.
         let moved = commissioned.exists();
-        let after = if commissioned.exists() {
-            self.weld(program, folder, &commissioned, &plant)?
+        let told = if moved {
+            self.measured().into_iter().try_for_each(|(axis, of)| {
+                let arguments = self.positioning(&commissioned, axis, of, seed);
+                bounded::run(program, &arguments, folder, "positioning.console", LIMIT).map(drop)
+            })
         } else {
-            Welded::failed(
-                told.err()
-                    .map_or_else(String::new, |error| last_words(&error.to_string())),
-            )
+            told.map(drop)
+        };
+        let after = match told {
+            Err(error) => Welded::failed(last_words(&error.to_string())),
+            Ok(()) => self.weld(program, folder, &commissioned, &plant)?,
         };
         Ok(Drawn {
             seed,
