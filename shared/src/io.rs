@@ -40,6 +40,11 @@ pub const MOTOR_AXIS: [usize; MOTORS] = [0, 0, 1, 2, 3, 4, 5];
 /// Names of the slides, in the order of [`SLIDES`].
 pub const SLIDE_NAMES: [&str; SLIDES] = ["U1", "V1", "U2", "V2"];
 
+/// Whether `motor` is called so, by its own name or by that of its axis.
+pub fn is_called(motor: usize, name: &str) -> bool {
+    [MOTOR_NAMES[motor], AXIS_NAMES[MOTOR_AXIS[motor]]].contains(&name)
+}
+
 /// A signed 16-bit converter code, −32767…32767 for −10…+10 V; −32768 is never sent (mathematics 0.8.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DacCode(pub i16);

@@ -4,7 +4,7 @@ use crate::{CameraMount, PlantFile, check};
 use config::toml_file::{self, TomlError};
 use plant::{ERRORS, GeometryConfig, MotorConfig, PlantConfig, SlideConfig, TouchConfig, Wave};
 use serde::Deserialize;
-use shared::io::{AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, SLIDE_NAMES};
+use shared::io::{AXIS_NAMES, MOTOR_NAMES, SLIDE_NAMES, is_called};
 use std::collections::BTreeMap;
 use std::path::Path;
 use thiserror::Error;
@@ -144,10 +144,8 @@ fn geometry(
     for (of, by_axis) in errors {
         for (along, error) in by_axis {
             let key = format!("geometry.{of}.{along}");
-            let named = |motor: &usize| MOTOR_NAMES[*motor] == of || AXIS_NAMES[MOTOR_AXIS[*motor]] == of;
             let motors: Vec<usize> = (0..motors.len())
-                .filter(|motor| motors[*motor].is_some())
-                .filter(named)
+                .filter(|motor| motors[*motor].is_some() && is_called(*motor, of))
                 .collect();
             let axis = AXIS_NAMES.iter().position(|name| name == along);
             let (false, Some(axis)) = (motors.is_empty(), axis) else {

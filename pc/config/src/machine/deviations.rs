@@ -7,7 +7,7 @@ use shared::config::{
     DEVIATION_POINTS, DEVIATION_POINTS_IN_ALL, DEVIATIONS, DeviationConfig, MOST_DEVIATION, MotionConfig,
     STEEPEST_DEVIATION,
 };
-use shared::io::{AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES};
+use shared::io::{AXIS_NAMES, MOTOR_NAMES, MOTORS, is_called};
 use shared::motion::Machine;
 use std::collections::BTreeMap;
 
@@ -124,16 +124,10 @@ impl Table {
     }
 }
 
-/// Numbers of the motors that are called so, by their own name or by that of their axis.
+/// Numbers of the motors that are called so.
 fn motors(name: &str, motion: &MotionConfig) -> Vec<usize> {
-    let fitted = motion
-        .motors
-        .iter()
-        .enumerate()
-        .filter(|(_, motor)| motor.is_some());
-    fitted
-        .map(|(number, _)| number)
-        .filter(|number| MOTOR_NAMES[*number] == name || AXIS_NAMES[MOTOR_AXIS[*number]] == name)
+    (0..MOTORS)
+        .filter(|motor| motion.motors[*motor].is_some() && is_called(*motor, name))
         .collect()
 }
 

@@ -80,6 +80,13 @@ impl Cli {
 /// Exit code of what is outside its limits.
 const OUTSIDE: u8 = 3;
 
+/// A number that is above 0, of an option.
+fn above_0(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    let value = value.filter(|value| value.is_finite() && *value > 0.0);
+    value.ok_or_else(|| "must be a number above 0".to_owned())
+}
+
 /// Reads the NC program in a file for a machine that stands at its reference marks, by the operator's choices among `options`,
 /// and says what a person should know of how it is understood. Subroutines in files of their own stand beside it.
 fn read_program(path: &Path, machine: &MachineFile, options: Options) -> anyhow::Result<Program> {

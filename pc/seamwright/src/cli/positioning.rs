@@ -1,7 +1,7 @@
 //! `seamwright positioning`: a test of positioning accuracy after ISO 230-2, and tables that make up for what it shows.
 
-use super::OUTSIDE;
 use super::boards::{BoardArgs, exit_code};
+use super::{OUTSIDE, above_0};
 use crate::console::{errln, outln};
 use crate::terminal::Operator;
 use anyhow::{Context, anyhow, bail};
@@ -15,7 +15,7 @@ use host_link::geometry::MachineGeometry;
 use job::{NoTest, PlannedPositioning, PositioningTest, Rest, Work};
 use report::write_positioning;
 use shared::config::DEVIATION_POINTS;
-use shared::io::{AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES};
+use shared::io::{AXIS_NAMES, MOTOR_AXIS, MOTOR_NAMES, is_called};
 use shared::kinematics::AXIS_UNIT;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -60,7 +60,7 @@ pub struct PositioningCommand {
     #[arg(long, value_name = "FILE")]
     measured: Option<PathBuf>,
     /// Farthest that the axis may be beside a target [mm or degrees; default: nothing is judged]
-    #[arg(long, value_name = "MM", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "MM", value_parser = above_0, allow_negative_numbers = true)]
     within: Option<f64>,
     #[command(flatten)]
     boards: BoardArgs,
@@ -70,14 +70,6 @@ pub struct PositioningCommand {
     /// Folder for plots (SVG) and tables (CSV) [default: none]
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-}
-
-/// A length that makes sense.
-fn positive(text: &str) -> Result<f64, &'static str> {
-    match text.parse() {
-        Ok(length) if f64::is_finite(length) && length > 0.0 => Ok(length),
-        _ => Err("must be a number above 0"),
-    }
 }
 
 /// A rest that makes sense.
@@ -207,14 +199,15 @@ impl PositioningCommand {
     fn of(&self, machine: &MachineFile, axis: usize) -> anyhow::Result<Vec<Of>> {
         let fitted = || (0..MOTOR_NAMES.len()).filter(|motor| machine.motion.motors[*motor].is_some());
         let of = |name: &str| {
-            let named = |motor: &usize| {
-                [AXIS_NAMES[MOTOR_AXIS[*motor]], MOTOR_NAMES[*motor]]
-                    .into_iter()
-                    .find(|known| known.eq_ignore_ascii_case(name))
-            };
-            fitted().find_map(|motor| {
+            let name = name.to_uppercase();
+            fitted().find(|motor| is_called(*motor, &name)).map(|motor| {
                 let axis = MOTOR_AXIS[motor];
-                named(&motor).map(|name| Of { name, axis, motor })
+                let names = [AXIS_NAMES[axis], MOTOR_NAMES[motor]];
+                Of {
+                    name: if names[0] == name { names[0] } else { names[1] },
+                    axis,
+                    motor,
+                }
             })
         };
         if self.of.is_empty() {

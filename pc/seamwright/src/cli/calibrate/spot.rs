@@ -1,5 +1,6 @@
 //! `seamwright calibrate spot`: where a camera looks beside its spot, with the machine.
 
+use super::super::above_0;
 use super::super::boards::BoardArgs;
 use super::super::cameras::source;
 use super::coupon::Coupon;
@@ -59,12 +60,6 @@ pub struct Spot {
     boards: BoardArgs,
     #[command(flatten)]
     coupon: Coupon,
-}
-
-fn above_0(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok();
-    let value = value.filter(|value| value.is_finite() && *value > 0.0);
-    value.ok_or_else(|| "must be a number above 0".to_owned())
 }
 
 fn long_enough(text: &str) -> Result<f64, String> {
