@@ -130,6 +130,7 @@ const FIELDS: &[&str] = &[
     "max_command",
     "following_error_base",
     "following_error_time_s",
+    "vibration_limit",
     "home.velocity",
     "home.mark_position",
     "home.max_travel",

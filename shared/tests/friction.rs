@@ -111,6 +111,7 @@ fn spike(friction: Option<FrictionConfig>, presliding: f64) -> f64 {
         velocity_at_10v: 400.0,
         following_error_base: 0.5,
         following_error_time_s: 0.05,
+        vibration_limit: 0.0,
         home_sequence: 0,
         home: HomeConfig {
             velocity: 10.0,

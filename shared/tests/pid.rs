@@ -23,6 +23,7 @@ fn pid(kd: f64) -> Pid {
         velocity_at_10v: 400.0,
         following_error_base: 1.0,
         following_error_time_s: 0.05,
+        vibration_limit: 0.0,
         home_sequence: 0,
         home: HomeConfig {
             velocity: 10.0,

@@ -66,6 +66,7 @@ mod tests {
             max_command: 1e6,
             following_error_base: 1.0,
             following_error_time_s: 0.1,
+            vibration_limit: 0.0,
             home_sequence: 0,
             home: HomeConfig {
                 velocity: -10.0,

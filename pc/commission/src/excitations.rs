@@ -22,7 +22,8 @@ pub struct CapturedMotion {
 }
 
 /// The machine with loops that are too slow to ring, whatever its gains are: in a loop that swings by itself nothing is measured. A
-/// motor trips where its drive is told as much as before, but not further from its place than an excitation may bring it.
+/// motor trips where its drive is told as much as before, but not further from its place than an excitation may bring it, and not for
+/// vibrating: whether its loop does is what is to be found.
 pub fn softened(machine: &MotionConfig) -> MotionConfig {
     let mut softened = machine.clone();
     for (index, motor) in softened.motors.iter_mut().enumerate() {
@@ -35,6 +36,7 @@ pub fn softened(machine: &MotionConfig) -> MotionConfig {
         let most = most_following_error_base(motor, axis).min(TRAVEL);
         let base = motor.following_error_base;
         motor.following_error_base = (base / SOFTENED).min(most).max(base);
+        motor.vibration_limit = 0.0;
     }
     if let Some(gantry) = &mut softened.gantry {
         gantry.coupling *= SOFTENED;

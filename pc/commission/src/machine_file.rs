@@ -7,6 +7,7 @@ use crate::four_digits;
 use shared::config::{DeviationConfig, MotionConfig};
 use shared::control::{FrictionConfig, NotchConfig};
 use shared::io::MOTOR_NAMES;
+use shared::motion::usual_vibration_limit;
 use thiserror::Error;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
 
@@ -33,11 +34,7 @@ pub enum WriteError {
 /// It is no machine file with that motor.
 pub fn rewrite(text: &str, name: &str, found: &Loop) -> Result<String, WriteError> {
     let mut document: DocumentMut = text.parse()?;
-    let motor = document
-        .get_mut("motors")
-        .and_then(|motors| motors.get_mut(name))
-        .and_then(Item::as_table_mut)
-        .ok_or_else(|| WriteError::NoMotor(name.to_owned()))?;
+    let motor = table_of(&mut document, name)?;
     let values = [
         ("velocity_at_10v", found.motor.velocity_at_10v),
         ("kp", found.motor.kp),
@@ -64,19 +61,23 @@ pub fn rewrite(text: &str, name: &str, found: &Loop) -> Result<String, WriteErro
     Ok(document.to_string())
 }
 
-/// The machine file `text` of `machine` with these loops of motors, by their indices. The cross-coupling of a gantry goes with the
-/// lesser proportional gain of its motors.
+/// The machine file `text` of `machine` with these loops of motors, by their indices, and vibration limits of all `motors` that have none:
+/// one whose loop was left as it is may swing. The cross-coupling of a gantry goes with the lesser proportional gain of its motors.
 ///
 /// # Errors
 /// It is no machine file with these motors.
 pub fn rewrite_all(
     text: &str,
     machine: &MotionConfig,
+    motors: &[usize],
     found: &[(usize, &Loop)],
 ) -> Result<String, WriteError> {
     let mut text = text.to_owned();
     for (index, found) in found {
         text = rewrite(&text, MOTOR_NAMES[*index], found)?;
+    }
+    for index in motors {
+        text = rewrite_vibration_limit(&text, machine, *index)?;
     }
     if machine.gantry.is_none() {
         return Ok(text);
@@ -90,6 +91,25 @@ pub fn rewrite_all(
         return Ok(text);
     }
     rewrite_coupling(&text, factor)
+}
+
+/// The machine file `text` of `machine` with the usual vibration limit of the motor with this `index`, if it has none.
+fn rewrite_vibration_limit(text: &str, machine: &MotionConfig, index: usize) -> Result<String, WriteError> {
+    let mut document: DocumentMut = text.parse()?;
+    let table = table_of(&mut document, MOTOR_NAMES[index])?;
+    let motor = machine.motors[index].as_ref();
+    if let Some(motor) = motor.filter(|motor| motor.vibration_limit == 0.0) {
+        let limit = four_digits(usual_vibration_limit(index, motor));
+        replace(table, "vibration_limit", limit.into());
+    }
+    Ok(document.to_string())
+}
+
+/// The table of motor `name`.
+fn table_of<'a>(document: &'a mut DocumentMut, name: &str) -> Result<&'a mut Table, WriteError> {
+    let motor = document.get_mut("motors").and_then(|motors| motors.get_mut(name));
+    let table = motor.and_then(Item::as_table_mut);
+    table.ok_or_else(|| WriteError::NoMotor(name.to_owned()))
 }
 
 /// The machine file `text` with the cross-coupling of its gantry so many times as strong.

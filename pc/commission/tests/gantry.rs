@@ -8,6 +8,7 @@ use shared::motion::Machine;
 const X1: usize = 0;
 const X2: usize = 1;
 const Y: usize = 2;
+const C: usize = 6;
 const SHIPPED: &str = include_str!("../../../machines/dual-beam-gantry.toml");
 
 fn machine(text: &str) -> MotionConfig {
@@ -44,7 +45,7 @@ fn the_coupling_goes_with_the_lesser_gain_of_both_motors_whichever_is_written_fi
     assert!(expected > 0.0);
     let written = |found: &[&[(usize, &Loop)]]| {
         found.iter().fold(SHIPPED.to_owned(), |text, found| {
-            rewrite_all(&text, &machine(&text), found).expect("these motors are in it")
+            rewrite_all(&text, &machine(&text), &[], found).expect("these motors are in it")
         })
     };
     for order in [
@@ -62,12 +63,29 @@ fn the_coupling_goes_with_the_lesser_gain_of_both_motors_whichever_is_written_fi
 
     // What stays is left alone, and what was there before is told.
     let own = "[motors.X1]\nkp = 120.0\n[gantry]\ncoupling = 40.0 # assumed\ncoupling_derivative = 0.0\n";
-    let written = rewrite_all(own, &before, &[(X1, &x2)]).expect("both are in it");
+    let written = rewrite_all(own, &before, &[], &[(X1, &x2)]).expect("both are in it");
     assert!(
         written.ends_with("[gantry]\ncoupling = 20.0 # commissioned; was 40.0\ncoupling_derivative = 0.0\n"),
         "{written}"
     );
-    assert!(rewrite_all("[motors.X1]\nkp = 120.0\n", &before, &[(X1, &x2)]).is_err());
+    assert!(rewrite_all("[motors.X1]\nkp = 120.0\n", &before, &[], &[(X1, &x2)]).is_err());
+}
+
+#[test]
+fn every_motor_that_was_measured_has_a_vibration_limit_and_keeps_its_own() {
+    let own = SHIPPED.replacen(
+        "following_error_base",
+        "vibration_limit = 0.05\nfollowing_error_base",
+        1,
+    );
+    let x2 = with_gain(X2, 60.0);
+    let written = rewrite_all(&own, &machine(&own), &[X1, X2, Y, C], &[(X2, &x2)]).expect("they are in it");
+    let limits = machine(&written)
+        .motors
+        .map(|motor| motor.expect("it is fitted").vibration_limit);
+    let expected = [0.05, 0.02, 0.02, 0.0, 0.0, 0.0, 0.01];
+    assert_eq!(limits, expected);
+    assert!(written.contains("vibration_limit = 0.02 # commissioned; was none"));
 }
 
 /// With a quarter of its gain a drive is told as much where its motor is four times as far off.

@@ -38,6 +38,7 @@ fn believed(plant: &PlantFile, index: usize) -> MotorConfig {
         max_command: motor.drive.velocity_at_10v,
         following_error_base: 1.0,
         following_error_time_s: 0.1,
+        vibration_limit: 0.0,
         home_sequence: 0,
         home: shared::control::HomeConfig {
             velocity: -10.0,

@@ -9,7 +9,7 @@ use host_link::geometry::MachineGeometry;
 use host_link::record::Recorded;
 use host_link::spool::Spool;
 use serde::Serialize;
-use shared::io::SIDES;
+use shared::io::{MOTORS, SIDES};
 use shared::protocol::{Identity, Role, TrackerStatus};
 use shared::state::Fault;
 use std::collections::BTreeMap;
@@ -30,6 +30,8 @@ pub struct RunRecord {
     pub motion: Option<Identity>,
     /// Its fault, if it has one.
     pub motion_fault: Option<Fault>,
+    /// Highest vibration of each motor (mm or degrees, root mean square).
+    pub vibration: [f32; MOTORS],
     /// What followed the seam, on a machine with a tracker.
     pub tracking: Option<TrackingRecord>,
     /// Control ticks lost.
@@ -120,6 +122,7 @@ pub(crate) fn run_record(
         error,
         motion: identity(Role::Motion),
         motion_fault: session.motion.fault,
+        vibration: session.motion.vibration,
         tracking: session.tracking.map(|tracking| TrackingRecord {
             identity: identity(Role::Tracker),
             tracker_ahead_us: tracking.tracker_ahead_us().unwrap_or(0),

@@ -13,9 +13,13 @@ use job::{ByBoard, Job, JobError, RunRecord, Taught, TrackingRecord};
 use parts::{Judgement, PartFile, Plot, Run, SeamLimits};
 use shared::io::MOTOR_AXIS;
 use shared::kinematics::AXIS_UNIT;
+use shared::motion::usual_vibration_limit;
 use shared::protocol::Identity;
 use shared::state::TrackerFault;
 use shared::units::MM_S_PER_M_MIN;
+
+/// Part of the vibration limit above which people are warned.
+const VIBRATION_WARNED: f64 = 0.5;
 
 /// A job after its end.
 #[derive(Debug)]
@@ -103,6 +107,10 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
             .as_ref()
             .map(|_| evaluation.max_following_error[motor] / unit)
     };
+    let vibration_limit = |motor: usize| {
+        let limit = motors[motor].as_ref().map(|motor| motor.vibration_limit);
+        limit.filter(|limit| *limit > 0.0)
+    };
     let working = paths.values().filter(|path| works(path));
     let longest = working.max_by(|a, b| a.length_mm().total_cmp(&b.length_mm()));
     let speed_mm_s = longest.map(|path| path.limits.velocity);
@@ -128,6 +136,14 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
         max_following_error: ByMotor(std::array::from_fn(following)),
         following_error_trip: ByMotor(std::array::from_fn(|motor| {
             motors[motor].as_ref().map(|motor| motor.following_error_base)
+        })),
+        vibration: ByMotor(std::array::from_fn(|motor| {
+            motors[motor].as_ref().map(|_| f64::from(run.vibration[motor]))
+        })),
+        vibration_limit: ByMotor(std::array::from_fn(vibration_limit)),
+        vibration_warned: ByMotor(std::array::from_fn(|motor| {
+            let half = vibration_limit(motor).map(|limit| VIBRATION_WARNED * limit);
+            half.or_else(|| Some(usual_vibration_limit(motor, motors[motor].as_ref()?)))
         })),
         max_gantry_skew_um: job
             .machine

@@ -58,6 +58,12 @@ pub struct Report {
     pub max_following_error: ByMotor,
     /// Following error at which the motion board trips at standstill; moving, it allows more.
     pub following_error_trip: ByMotor,
+    /// Highest vibration from the search of the reference marks on: root mean square of the following error above 10 Hz.
+    pub vibration: ByMotor,
+    /// Vibration at which the motion board stops, of motors for which it does.
+    pub vibration_limit: ByMotor,
+    /// Vibration above which people are warned: half of that, and of other motors the limit that commissioning would give them.
+    pub vibration_warned: ByMotor,
     /// Largest |X1 − X2 − square offset| on any path, where X is a gantry.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_gantry_skew_um: Option<f64>,

@@ -179,6 +179,16 @@ fn axes(f: &mut Formatter, r: &Report) -> Result {
         let unit = if is_rotary(motor) { "°" } else { "mm" };
         writeln!(f, "  {:<28}{error:8.4} {unit}", format!("following error {name}"))?;
     }
+    for (motor, name, level) in r.vibration.fitted() {
+        let unit = if is_rotary(motor) { "° rms" } else { "mm rms" };
+        write!(f, "  {:<28}{level:8.4} {unit}", format!("vibration {name}"))?;
+        let warned = r.vibration_warned.0[motor].is_some_and(|from| level > from);
+        match (warned, r.vibration_limit.0[motor]) {
+            (false, _) => writeln!(f)?,
+            (true, Some(limit)) => writeln!(f, ", HIGH: the machine stops at {limit}")?,
+            (true, None) => writeln!(f, ", HIGH: its loop hunts, or something is loose; commission it")?,
+        }
+    }
     Ok(())
 }
 
@@ -346,6 +356,9 @@ mod tests {
                 "  side 2, width of its gap           –      –        –      –        – mm\n",
                 "following error C             0.1719 °",
                 "gantry skew                      4.2 µm",
+                "vibration Y                   0.0030 mm rms\n",
+                "vibration Z                   0.0120 mm rms, HIGH: the machine stops at 0.02\n",
+                "vibration A                   0.0130 ° rms, HIGH: its loop hunts, or something is loose; commission it\n",
                 "pictures of camera 2        900 taken, 880 measured, 9 refused, 4 without a seam, 7 lost, 4 late, re-locked 1 times",
                 "fault: laser 1 reports",
             ],

@@ -32,6 +32,9 @@ pub(crate) fn report() -> Report {
         max_contour_error_mm: Some(0.004),
         following_error_trip: ByMotor([0.5; MOTORS].map(Some)),
         max_following_error: ByMotor([0.01, 0.02, 0.03, 0.04, 0.001, 0.002, 0.1719].map(Some)),
+        vibration: ByMotor([0.001, 0.002, 0.003, 0.012, 0.013, 0.001, 0.001].map(Some)),
+        vibration_limit: ByMotor([Some(0.02), Some(0.02), Some(0.02), Some(0.02), None, None, None]),
+        vibration_warned: ByMotor([0.01; MOTORS].map(Some)),
         max_gantry_skew_um: Some(4.2),
         weld_ticks: WeldTicks {
             recorded: 4800,
@@ -131,6 +134,7 @@ pub(crate) fn without_tracker() -> Report {
     report.telemetry_gaps.tracker = None;
     report.max_gantry_skew_um = None;
     report.max_following_error.0[1] = None;
+    report.vibration.0[1] = None;
     report.part = Some("job.toml".into());
     report.figures = vec![
         figure("max_distance_mm", "distance to the saddle", 0.0061, Some(0.01)),

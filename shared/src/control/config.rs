@@ -47,6 +47,9 @@ pub struct MotorConfig {
     pub following_error_base: f64,
     /// Following-error trip grows by this time × speed \[s\].
     pub following_error_time_s: f64,
+    /// Vibration trip: root mean square of the following error above 10 Hz; 0, or left out, switches it off.
+    #[serde(default)]
+    pub vibration_limit: f64,
     /// Motors with a lower number find their reference first, those with the same number together.
     pub home_sequence: u8,
     /// How the motor finds its reference mark.

@@ -147,6 +147,7 @@ mod tests {
             max_command: 400.0,
             following_error_base: 1.0,
             following_error_time_s: 0.05,
+            vibration_limit: 0.0,
             home_sequence: 0,
             home: HomeConfig {
                 velocity: 1.0,

@@ -17,7 +17,7 @@ use super::machine::Machine;
 use super::permit::{BeamLease, Permits};
 use super::process_inputs::Missing;
 use super::segment::{MotorReference, Segment};
-use super::servo::{ServoOrder, ServoReport, ServoSetup};
+use super::servo::{ServoOrder, ServoReport, ServoSetup, UNIT};
 use super::superimposed::Superimposed;
 use crate::control::UNATTENDED_S;
 use crate::io::{AXES, MOTORS, PROCESS_INPUTS, SIDES};
@@ -226,9 +226,6 @@ impl MotionController {
         let time_us = self.count(input);
         self.tick_us = time_us;
         self.servo_ticks = (report.ticks, report.lost, report.late);
-        for (vibration, error) in self.vibration.iter_mut().zip(report.peak_error) {
-            vibration.add(error);
-        }
         self.watch(input);
         if self.capturing.runs() {
             self.capturing.take(&report.excitation);
@@ -321,7 +318,7 @@ impl MotionController {
                 switched: report.switched,
                 axes: self.measured,
                 truth: report.truth,
-                following_error: report.peak_error.map(|error| error as f32),
+                following_error: report.peak_error.map(|error| libm::fabs(error) as f32),
                 skew_mm: report.peak_skew as f32,
                 load: None,
             },
@@ -394,6 +391,7 @@ impl MotionController {
         }
         self.watch_power(input.report.power_fault);
         self.watch_answers(&input.report);
+        self.watch_vibration(&input.report);
         if let (State::Stopping, true) = (self.state, self.tick > self.stop_by.0) {
             self.trip(Fault::StopTooLong {
                 limit_ms: self.stop_by.1,
@@ -484,6 +482,32 @@ impl MotionController {
             .inputs
             .tick(&mut self.missing, report.lines, report.process);
         match fault {
+            Some(fault) if self.state.on_path() => self.stop_for(fault),
+            Some(fault) if self.state.drives_on() => self.trip(fault),
+            _ => {}
+        }
+    }
+
+    /// A motor vibrates: the machine stops. One that is excited is meant to.
+    fn watch_vibration(&mut self, report: &ServoReport) {
+        let follows = self.enabled && self.enabling == 0 && !self.capturing.runs();
+        let Some(machine) = self.machine.as_ref().filter(|_| follows) else {
+            return self.vibration.iter_mut().for_each(Vibration::rest);
+        };
+        let mut found = None;
+        for (motor, vibration) in self.vibration.iter_mut().enumerate() {
+            vibration.add(report.peak_error[motor]);
+            let limit = machine.vibration_limits[motor];
+            if vibration.exceeds(limit) {
+                let of_report = (1e3 / UNIT[motor]) as f32;
+                found = found.or(Some(Fault::Vibration {
+                    motor: motor as u8,
+                    seen_um: vibration.level() * of_report,
+                    limit_um: limit * of_report,
+                }));
+            }
+        }
+        match found {
             Some(fault) if self.state.on_path() => self.stop_for(fault),
             Some(fault) if self.state.drives_on() => self.trip(fault),
             _ => {}

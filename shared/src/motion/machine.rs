@@ -6,7 +6,7 @@ use super::homing::HomingPlan;
 use super::process_inputs::ProcessInputs;
 use super::segment::MotorReference;
 use super::sensible;
-use super::servo::ServoSetup;
+use super::servo::{ServoSetup, UNIT};
 use super::superimposed::Superimposed;
 use crate::config::{DeviationConfig, MotionConfig};
 use crate::control::{Gantry, Pid};
@@ -41,6 +41,8 @@ pub struct Machine {
     pub link_timeout_us: u64,
     /// Path ticks until a drive follows commands.
     pub enable_ticks: u32,
+    /// Vibration at which each motor stops the machine (mm or rad), infinite where it is not watched.
+    pub vibration_limits: [f32; MOTORS],
     limits: [AxisLimits; AXES],
     /// How far beyond its travel an axis may be: twice its way to a stop from its highest speed (mm, rad).
     overrun: [f64; AXES],
@@ -62,6 +64,11 @@ impl Machine {
             beams,
             link_timeout_us: u64::from(config.link_timeout_ms) * 1000,
             enable_ticks: config.drive_enable_ms,
+            vibration_limits: core::array::from_fn(|motor| {
+                let limit = config.motors[motor].as_ref().map(|motor| motor.vibration_limit);
+                let watched = limit.filter(|limit| *limit > 0.0);
+                watched.map_or(f32::INFINITY, |limit| (limit * UNIT[motor]) as f32)
+            }),
             overrun: limits.map(|axis| OVERRUN * full_stop(&axis)),
             limits,
             gantry,

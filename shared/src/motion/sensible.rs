@@ -157,6 +157,14 @@ fn most_error_at_speed(axis: &AxisConfig) -> f64 {
     ERROR_AT_SPEED * (axis.travel_max - axis.travel_min)
 }
 
+/// The `vibration_limit` that the motor with this `index` has where nobody says another one (mm or °): a swing of ±0.028 mm, as much as
+/// a spot may be beside its seam, or one that moves a tip 160 mm away as far; where gratings are coarse, ten counts.
+pub fn usual_vibration_limit(index: usize, motor: &MotorConfig) -> f64 {
+    let usual = if MOTOR_AXIS[index] < LINEAR { 0.02 } else { 0.01 };
+    let counts = FEWEST_COUNTS / libm::fabs(motor.counts_per_unit);
+    libm::fmin(libm::fmax(usual, counts), motor.following_error_base)
+}
+
 /// Largest `following_error_base` that `motor` of `axis` may have beside its `following_error_time_s` (mm or °).
 pub fn most_following_error_base(motor: &MotorConfig, axis: &AxisConfig) -> f64 {
     let left = most_error_at_speed(axis) - motor.following_error_time_s * axis.max_velocity;
@@ -221,6 +229,13 @@ fn check_motor(owner: &str, motor: &MotorConfig, axis: &AxisConfig) -> Result<()
         motor.following_error_time_s,
         0.0..=libm::fmin(room, LONGEST_LAG_S),
     )?;
+    if motor.vibration_limit != 0.0 {
+        of(
+            "vibration_limit",
+            motor.vibration_limit,
+            FEWEST_COUNTS / scale..=base,
+        )?;
+    }
     check_home(
         owner,
         &motor.home,

@@ -194,7 +194,7 @@ pub struct ServoReport {
     pub limit_plus: Bits,
     /// Limit switches at the negative ends.
     pub limit_minus: Bits,
-    /// Largest |following error| since the last report.
+    /// Following error (reference − position) that was largest since the last report (mm or rad).
     pub peak_error: [f64; MOTORS],
     /// Largest |skew| since the last report \[mm\].
     pub peak_skew: f64,
@@ -532,7 +532,9 @@ impl ServoLoops {
                 acceleration,
             };
             let error = position_now - position[index];
-            report.peak_error[index] = report.peak_error[index].max(libm::fabs(error));
+            if libm::fabs(error) > libm::fabs(report.peak_error[index]) {
+                report.peak_error[index] = error;
+            }
             motor.following.check(error, velocity)?;
         }
         let mut output = [0.0; MOTORS];

@@ -1,48 +1,92 @@
-//! A level meter for the following error, for display only: no controller acts on it.
+//! Vibration of a motor: that part of its following error which is quicker than motion along a path makes it.
 
 use micromath::F32Ext;
 
-/// Weight of one new peak in the mean.
-const WEIGHT: f32 = 0.02;
-/// Levels below one nanometre (or nanoradian) are silence.
-const FLOOR_UM: f32 = 1e-3;
+/// The mean that is taken off follows an error by this part in a millisecond: what is left are frequencies above 10 Hz.
+const SLOW: f32 = 1.0 / 16.0;
+/// Part of one new square in the mean of the squares: about a second counts. What swings at four times its limit is found in
+/// 0.07 s, at twice in 0.3 s; what a hard start leaves of itself within 0.1 s counts for a tenth.
+const WEIGHT: f32 = 1.0 / 1024.0;
 
-/// Smoothed square of a motor's peak following error. The rough, fast arithmetic of micromath is good enough
-/// here and nowhere else: its figures are off by per cents.
+/// Root mean square of a motor's following error above 10 Hz (mm or rad), and the highest so far. Single precision, with the root
+/// of micromath, is good enough here and nowhere else: it is off by per cents.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vibration {
-    mean_square_um2: f32,
+    slow: f32,
+    mean_square: f32,
+    highest: f32,
 }
 
 impl Vibration {
-    /// Silence.
-    pub const NONE: Self = Self { mean_square_um2: 0.0 };
+    /// Stillness.
+    pub const NONE: Self = Self {
+        slow: 0.0,
+        mean_square: 0.0,
+        highest: 0.0,
+    };
 
-    /// Adds the peak |following error| of a millisecond (mm or rad).
-    pub fn add(&mut self, peak: f64) {
-        let peak_um = (peak * 1000.0) as f32;
-        self.mean_square_um2 += WEIGHT * (peak_um * peak_um - self.mean_square_um2);
+    /// Takes the following error of a millisecond, with its sign.
+    pub fn add(&mut self, error: f64) {
+        let error = error as f32;
+        self.slow += SLOW * (error - self.slow);
+        let quick = error - self.slow;
+        self.mean_square += WEIGHT * (quick * quick - self.mean_square);
+        self.highest = self.highest.max(self.mean_square);
     }
 
-    /// log2 of the smoothed error in µm (or mrad): one more is twice as loud.
+    /// Begins anew, as the motor does not follow meanwhile; the highest stays.
+    pub fn rest(&mut self) {
+        *self = Self {
+            highest: self.highest,
+            ..Self::NONE
+        };
+    }
+
+    /// Whether it is more than `limit`.
+    pub fn exceeds(&self, limit: f32) -> bool {
+        self.mean_square > limit * limit
+    }
+
+    /// What it is now.
     pub fn level(&self) -> f32 {
-        F32Ext::log2(F32Ext::sqrt(self.mean_square_um2).max(FLOOR_UM))
+        F32Ext::sqrt(self.mean_square)
+    }
+
+    /// The highest so far.
+    pub fn highest(&self) -> f32 {
+        F32Ext::sqrt(self.highest)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::Vibration;
+    use core::f64::consts::TAU;
+
+    /// After `ms` of a sine of 0.01 mm, 0.007 mm rms.
+    fn shaken(hz: f64, ms: u32) -> Vibration {
+        let mut vibration = Vibration::NONE;
+        (0..ms).for_each(|ms| vibration.add(0.01 * libm::sin(TAU * hz * 1e-3 * f64::from(ms))));
+        vibration
+    }
 
     #[test]
-    fn twice_the_error_is_about_one_level_more() {
-        let level = |peak_mm: f64| {
-            let mut vibration = Vibration::NONE;
-            (0..1000).for_each(|_| vibration.add(peak_mm));
-            vibration.level()
-        };
-        assert!((level(0.004) - 2.0).abs() < 0.2, "{}", level(0.004));
-        assert!((level(0.008) - level(0.004) - 1.0).abs() < 0.2);
-        assert!(level(0.0) < -9.0);
+    fn a_sine_above_the_corner_counts_whole_and_one_below_it_hardly() {
+        for hz in [80.0, 200.0, 470.0] {
+            let seen = shaken(hz, 5000).level() / 0.007_071;
+            assert!((0.9..1.1).contains(&seen), "{hz} Hz: {seen}");
+        }
+        let seen = shaken(1.0, 5000).level() / 0.007_071;
+        assert!(seen < 0.15, "{seen}");
+    }
+
+    #[test]
+    fn a_swing_of_twice_the_limit_exceeds_it_after_a_third_of_a_second_and_is_forgotten_at_rest() {
+        let limit = 0.003_535;
+        assert!(!shaken(80.0, 250).exceeds(limit));
+        let mut vibration = shaken(80.0, 350);
+        assert!(vibration.exceeds(limit));
+        vibration.rest();
+        assert!(!vibration.exceeds(1e-6) && vibration.highest() > limit);
     }
 }

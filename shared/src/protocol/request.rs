@@ -568,8 +568,9 @@ pub struct MotionStatus {
     pub path_lost: u32,
     /// Datagrams that could not be sent.
     pub unsent: u32,
-    /// Vibration level of each motor's following error, for display only (log2 µm, rough arithmetic).
-    pub vibration_level: [f32; MOTORS],
+    /// Highest vibration of each motor since there are parameters: root mean square of its following error above 10 Hz (mm or
+    /// degrees, to some per cent).
+    pub vibration: [f32; MOTORS],
 }
 
 /// State of the tracker board.

@@ -65,6 +65,16 @@ pub enum Fault {
         /// The trip at that speed.
         limit_um: f32,
     },
+    /// The following error swings by more than the vibration trip (root mean square, µm or millidegrees).
+    #[error("{} vibrates by {seen_um:.1} µm (or m°) rms, the limit is {limit_um:.1}: look for a loose coupling or screw; if its loop hunts, commission it anew or lower kp", MOTOR_NAMES[*motor as usize])]
+    Vibration {
+        /// Index of the motor.
+        motor: u8,
+        /// What was seen.
+        seen_um: f32,
+        /// The trip.
+        limit_um: f32,
+    },
     /// A grating moved further in one tick than the axis can.
     #[error("the grating of {} jumped by {seen} counts in one tick, at most {limit} are possible: check its cable and reading head", MOTOR_NAMES[*motor as usize])]
     EncoderStep {

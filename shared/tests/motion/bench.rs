@@ -62,6 +62,7 @@ pub fn config() -> MotionConfig {
         max_command: FULL_SPEED,
         following_error_base: 0.5,
         following_error_time_s: 0.05,
+        vibration_limit: 0.0,
         home_sequence: 1,
         home: HomeConfig {
             velocity: -20.0,

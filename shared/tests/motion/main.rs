@@ -21,4 +21,5 @@ mod streaming;
 mod superimposed;
 mod ticks;
 mod trips;
+mod vibration;
 mod words;

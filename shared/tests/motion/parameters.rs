@@ -47,6 +47,7 @@ fn a_protection_that_never_acts_is_refused() {
     motor("following_error_base", 1e9, |m| &mut m.following_error_base);
     motor("following_error_base", 10.1, |m| &mut m.following_error_base);
     motor("following_error_time_s", 0.3, |m| &mut m.following_error_time_s);
+    motor("vibration_limit", 0.6, |m| &mut m.vibration_limit);
     // 1 mrad of 3500 mm.
     gantry("skew_trip_mm", 1e9, |g| &mut g.skew_trip_mm);
     gantry("skew_trip_mm", 3.6, |g| &mut g.skew_trip_mm);
@@ -57,6 +58,7 @@ fn a_protection_that_never_acts_is_refused() {
     }
     // One that the grating's own noise sets off.
     motor("following_error_base", 1e-4, |m| &mut m.following_error_base);
+    motor("vibration_limit", 1e-4, |m| &mut m.vibration_limit);
     gantry("skew_trip_mm", 1e-4, |g| &mut g.skew_trip_mm);
 }
 

@@ -35,6 +35,7 @@ const BY_AXIS: [(&[&str], [&str; 2]); 6] = [
             "mark_position",
             "max_travel",
             "following_error_base",
+            "vibration_limit",
             "park",
         ],
         ["mm", "°"],

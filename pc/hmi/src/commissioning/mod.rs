@@ -159,7 +159,7 @@ impl Commissioning {
         let loops: Vec<_> = chosen
             .filter_map(|motor| Some((motor.index, &motor.unwritten()?.of_loop)))
             .collect();
-        parameters.propose(rewrite_all(&text, &machine.motion, &loops).with_context(file)?);
+        parameters.propose(rewrite_all(&text, &machine.motion, indices, &loops).with_context(file)?);
         Ok(parameters)
     }
 

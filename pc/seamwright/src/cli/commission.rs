@@ -132,7 +132,7 @@ impl Commission {
             }
         }
         let loops: Vec<_> = loops.iter().map(|(motor, found)| (*motor, found)).collect();
-        let text = rewrite_all(&text, &machine.motion, &loops).with_context(file)?;
+        let text = rewrite_all(&text, &machine.motion, motors, &loops).with_context(file)?;
         if let Some(output) = &self.output {
             MachineFile::parse(&output.display().to_string(), &text)
                 .context("what was found makes no machine file, and none is written")?;

@@ -86,6 +86,19 @@ impl Words {
                     "Schleppfehler von {motor} {seen_um:.0} µm (oder m°), die Grenze dort ist {limit_um:.0}: blockierte Achse, Verstärkungen und Skalierung des Antriebs prüfen"
                 )
             }
+            Fault::Vibration {
+                motor,
+                seen_um,
+                limit_um,
+            } => {
+                let motor = motor_name(motor);
+                say!(
+                    l,
+                    fault,
+                    "{motor} 振动 {seen_um:.1} µm（或 m°）均方根，限值 {limit_um:.1}：检查联轴器或螺钉是否松动；若控制环自激，请重新调试或减小 kp",
+                    "{motor} schwingt mit {seen_um:.1} µm (oder m°) effektiv, die Grenze ist {limit_um:.1}: lose Kupplung oder Schraube suchen; schwingt der Regelkreis, neu in Betrieb nehmen oder kp senken"
+                )
+            }
             Fault::EncoderStep { motor, seen, limit } => {
                 let motor = motor_name(motor);
                 say!(

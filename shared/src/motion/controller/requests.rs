@@ -4,12 +4,13 @@ use super::MotionController;
 use super::loaded::LoadedPath;
 use crate::config::{DeviationConfig, MotionConfig};
 use crate::geometry::PoseOffset;
-use crate::io::{AXES, Bits, MOTOR_AXIS, PROCESS_INPUTS};
+use crate::io::{AXES, Bits, MOTOR_AXIS, MOTORS, PROCESS_INPUTS};
 use crate::kinematics::AXIS_UNIT;
+use crate::motion::Vibration;
 use crate::motion::excitation::{ExcitationOrder, Limits};
 use crate::motion::homing::Homing;
 use crate::motion::machine::Machine;
-use crate::motion::servo::InputState;
+use crate::motion::servo::{InputState, UNIT};
 use crate::protocol::{
     Excitation, ExcitationEnd, HOLD_TO_RUN_MS, LOAD_ELEMENTS, MotionStatus, PathElement, Refusal, Request,
     Response, Room,
@@ -162,6 +163,7 @@ impl MotionController {
         self.machine = Some(machine);
         self.servo_setup = Some(servo);
         self.homed = false;
+        self.vibration = [Vibration::NONE; MOTORS];
         // A path was planned for the machine it was loaded for.
         self.path = LoadedPath::NONE;
         Ok(())
@@ -378,7 +380,7 @@ impl MotionController {
             path_ticks: self.tick as u32,
             path_lost: self.ticks_lost.wrapping_add(servo_late),
             unsent,
-            vibration_level: self.vibration.map(|vibration| vibration.level()),
+            vibration: core::array::from_fn(|motor| self.vibration[motor].highest() / UNIT[motor] as f32),
         }
     }
 }
