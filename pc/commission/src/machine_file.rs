@@ -7,7 +7,7 @@ use crate::four_digits;
 use shared::config::{DeviationConfig, MotionConfig};
 use shared::control::{FrictionConfig, NotchConfig};
 use shared::io::MOTOR_NAMES;
-use shared::motion::usual_vibration_limit;
+use shared::motion::vibration_limit;
 use thiserror::Error;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
 
@@ -99,7 +99,7 @@ fn rewrite_vibration_limit(text: &str, machine: &MotionConfig, index: usize) -> 
     let table = table_of(&mut document, MOTOR_NAMES[index])?;
     let motor = machine.motors[index].as_ref();
     if let Some(motor) = motor.filter(|motor| motor.vibration_limit == 0.0) {
-        let limit = four_digits(usual_vibration_limit(index, motor));
+        let limit = four_digits(vibration_limit(index, motor));
         replace(table, "vibration_limit", limit.into());
     }
     Ok(document.to_string())

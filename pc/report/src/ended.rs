@@ -13,7 +13,7 @@ use job::{ByBoard, Job, JobError, RunRecord, Taught, TrackingRecord};
 use parts::{Judgement, PartFile, Plot, Run, SeamLimits};
 use shared::io::MOTOR_AXIS;
 use shared::kinematics::AXIS_UNIT;
-use shared::motion::usual_vibration_limit;
+use shared::motion;
 use shared::protocol::Identity;
 use shared::state::TrackerFault;
 use shared::units::MM_S_PER_M_MIN;
@@ -142,8 +142,8 @@ pub fn ended(job: &Job, mut run: RunRecord) -> Ended {
         })),
         vibration_limit: ByMotor(std::array::from_fn(vibration_limit)),
         vibration_warned: ByMotor(std::array::from_fn(|motor| {
-            let half = vibration_limit(motor).map(|limit| VIBRATION_WARNED * limit);
-            half.or_else(|| Some(usual_vibration_limit(motor, motors[motor].as_ref()?)))
+            let limit = motion::vibration_limit(motor, motors[motor].as_ref()?);
+            Some(VIBRATION_WARNED * limit)
         })),
         max_gantry_skew_um: job
             .machine

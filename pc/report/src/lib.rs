@@ -62,7 +62,7 @@ pub struct Report {
     pub vibration: ByMotor,
     /// Vibration at which the motion board stops, of motors for which it does.
     pub vibration_limit: ByMotor,
-    /// Vibration above which people are warned: half of that, and of other motors the limit that commissioning would give them.
+    /// Vibration above which people are warned: half of that, of other motors half of the usual limit.
     pub vibration_warned: ByMotor,
     /// Largest |X1 − X2 − square offset| on any path, where X is a gantry.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -496,9 +496,9 @@ impl MotionController {
         };
         let mut found = None;
         for (motor, vibration) in self.vibration.iter_mut().enumerate() {
-            vibration.add(report.peak_error[motor]);
             let limit = machine.vibration_limits[motor];
-            if vibration.exceeds(limit) {
+            vibration.add(report.peak_error[motor], limit);
+            if machine.vibration_stops[motor] && vibration.exceeds(limit) {
                 let of_report = (1e3 / UNIT[motor]) as f32;
                 found = found.or(Some(Fault::Vibration {
                     motor: motor as u8,

@@ -41,8 +41,10 @@ pub struct Machine {
     pub link_timeout_us: u64,
     /// Path ticks until a drive follows commands.
     pub enable_ticks: u32,
-    /// Vibration at which each motor stops the machine (mm or rad), infinite where it is not watched.
+    /// Vibration limit of each motor (mm or rad), the usual one where it has none,
     pub vibration_limits: [f32; MOTORS],
+    /// and the motors that stop the machine when they are above it.
+    pub vibration_stops: [bool; MOTORS],
     limits: [AxisLimits; AXES],
     /// How far beyond its travel an axis may be: twice its way to a stop from its highest speed (mm, rad).
     overrun: [f64; AXES],
@@ -64,11 +66,14 @@ impl Machine {
             beams,
             link_timeout_us: u64::from(config.link_timeout_ms) * 1000,
             enable_ticks: config.drive_enable_ms,
-            vibration_limits: core::array::from_fn(|motor| {
-                let limit = config.motors[motor].as_ref().map(|motor| motor.vibration_limit);
-                let watched = limit.filter(|limit| *limit > 0.0);
-                watched.map_or(f32::INFINITY, |limit| (limit * UNIT[motor]) as f32)
+            vibration_limits: core::array::from_fn(|index| match &config.motors[index] {
+                Some(motor) => (sensible::vibration_limit(index, motor) * UNIT[index]) as f32,
+                None => f32::INFINITY,
             }),
+            vibration_stops: config
+                .motors
+                .each_ref()
+                .map(|motor| motor.as_ref().is_some_and(|motor| motor.vibration_limit > 0.0)),
             overrun: limits.map(|axis| OVERRUN * full_stop(&axis)),
             limits,
             gantry,

@@ -28,7 +28,7 @@ pub use excitation::{Chirp, Way};
 pub use machine::Machine;
 pub use permit::BeamLease;
 pub use readback::DARK;
-pub use sensible::{check_coupling, check_gains, most_following_error_base, usual_vibration_limit};
+pub use sensible::{check_coupling, check_gains, most_following_error_base, vibration_limit};
 pub use servo::{ServoLoops, ServoOrder, ServoReport, ServoSetup};
 
 use vibration::Vibration;

@@ -157,9 +157,12 @@ fn most_error_at_speed(axis: &AxisConfig) -> f64 {
     ERROR_AT_SPEED * (axis.travel_max - axis.travel_min)
 }
 
-/// The `vibration_limit` that the motor with this `index` has where nobody says another one (mm or °): a swing of ±0.028 mm, as much as
-/// a spot may be beside its seam, or one that moves a tip 160 mm away as far; where gratings are coarse, ten counts.
-pub fn usual_vibration_limit(index: usize, motor: &MotorConfig) -> f64 {
+/// The vibration limit of the motor with this `index`, or the usual one if it has none (mm or °): a swing of ±0.028 mm, as much as a spot
+/// may be beside its seam, or one that moves a tip 160 mm away as far; where gratings are coarse, ten counts.
+pub fn vibration_limit(index: usize, motor: &MotorConfig) -> f64 {
+    if motor.vibration_limit > 0.0 {
+        return motor.vibration_limit;
+    }
     let usual = if MOTOR_AXIS[index] < LINEAR { 0.02 } else { 0.01 };
     let counts = FEWEST_COUNTS / libm::fabs(motor.counts_per_unit);
     libm::fmin(libm::fmax(usual, counts), motor.following_error_base)

@@ -60,9 +60,9 @@ fn an_axis_at_rest_that_vibrates_trips() {
     assert_eq!(shaken(&mut bench, 0.02, 3000, State::Fault), None);
     let level = f64::from(bench.status().vibration[Y]);
     assert!((0.012..0.016).contains(&level), "{level}");
-    // 0.035 mm rms: a third of its square is above that of the limit after 0.1 s.
+    // 0.035 mm rms.
     let ms = shaken(&mut bench, 0.05, 1000, State::Fault).expect("a trip");
-    assert!(ms < 200, "{ms} ms");
+    assert!((200..600).contains(&ms), "{ms} ms");
     bench.run_ms(1);
     assert_eq!(bench.command, MotionCommand::SAFE);
     let seen = seen(&mut bench);
@@ -104,8 +104,9 @@ fn a_motion_as_hard_as_the_axis_bears_is_no_vibration() {
 fn a_motor_that_is_not_watched_is_told_only() {
     let mut bench = Bench::homed();
     assert_eq!(shaken(&mut bench, 0.2, 2000, State::Fault), None);
+    // Twice the usual limit at most.
     let level = f64::from(bench.status().vibration[Y]);
-    assert!((0.12..0.16).contains(&level), "{level}");
+    assert!((0.03..0.0401).contains(&level), "{level}");
 }
 
 #[test]
