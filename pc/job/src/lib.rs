@@ -8,6 +8,7 @@ mod circle;
 mod countdown;
 mod delays;
 mod exciting;
+mod feed_override;
 mod feeding;
 mod following;
 pub mod fresh_board;
@@ -481,6 +482,7 @@ impl Weld {
             session.phase(Phase::Dwelling);
             session.dwell(path.dwell_before_s)?;
         }
+        session.fix_feed(path.fixed_feed)?;
         session.phase(phase);
         let ran = follow(session, feeding, &path, id);
         self.paths.insert(id, path);

@@ -19,7 +19,7 @@ impl Session<'_> {
             None if waiting && self.control.unattended() => return Err(JobError::NoOperator),
             Some(Command::Hold) => self.ask(&Request::Hold)?,
             Some(Command::Back) => self.ask(&Request::Back)?,
-            Some(Command::Override(factor)) => self.ask(&Request::Override { factor: *factor })?,
+            Some(Command::Override(factor)) => self.override_feed(*factor)?,
             None | Some(_) => {}
         }
         Ok(order)

@@ -1,6 +1,7 @@
 //! A session with the boards while a job runs: takes what they send and asks for their state.
 
 use crate::countdown::Countdown;
+use crate::feed_override::FeedOverride;
 use crate::recentring::Recentring;
 use crate::run_record::ByBoard;
 use crate::surroundings::Surroundings;
@@ -46,6 +47,7 @@ pub(super) struct Session<'a> {
     pub motion: MotionStatus,
     /// The probe, if the machine has one.
     pub probe: Option<ProbeInput>,
+    pub(super) feed_override: FeedOverride,
     pub began: Duration,
     lost_before: u32,
     next_status: Duration,
@@ -91,6 +93,7 @@ impl<'a> Session<'a> {
             lost_before: lost(&motion),
             motion,
             probe: None,
+            feed_override: FeedOverride::NONE,
             began,
             next_status: began,
             ticked: began,

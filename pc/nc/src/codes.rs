@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 140] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 142] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -76,10 +76,12 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 140] = [
     ('G', 700, Code::Inches, "G70", Group::Units),
     ('G', 710, Code::Millimetres, "G71", Group::Units),
     ('G', 730, Code::ChipBreaking, "G73", Group::Motion),
+    ('G', 740, Code::LeftTapping, "G74", Group::Motion),
     ('G', 800, Code::CancelMotion, "G80", Group::CycleEnd),
     ('G', 810, Code::Drilling, "G81", Group::Motion),
     ('G', 820, Code::DrillingWithDwell, "G82", Group::Motion),
     ('G', 830, Code::PeckDrilling, "G83", Group::Motion),
+    ('G', 840, Code::Tapping, "G84", Group::Motion),
     ('G', 850, Code::Boring, "G85", Group::Motion),
     ('G', 860, Code::BoringWithStop, "G86", Group::Motion),
     ('G', 890, Code::BoringWithDwell, "G89", Group::Motion),
@@ -151,7 +153,7 @@ const fn probe(away: bool, must: bool) -> Code {
 }
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 31] = [
+const REFUSED: [(char, u32, &str); 29] = [
     ('G', 70, LATHE),
     ('G', 120, POCKET),
     ('G', 130, POCKET),
@@ -183,9 +185,7 @@ const REFUSED: [(char, u32, &str); 31] = [
         "tilted work planes are not supported: rotate about Z with G68",
     ),
     ('G', 720, LATHE),
-    ('G', 740, THREADING),
     ('G', 760, THREADING),
-    ('G', 840, THREADING),
     ('G', 870, "back boring is not supported: write its motions out"),
     (
         'G',
@@ -222,8 +222,7 @@ const LOCAL_CALL: &str = "write M98 P and the number of an O word: there are no 
 pub(super) const LATHE: &str = "lathe codes are not supported";
 const MACRO: &str =
     "macros are not called after motions, and G65 stands first in its block: write G65 P where it is to run";
-const THREADING: &str =
-    "threading and tapping need a spindle that the axes follow, and this machine has none";
+const THREADING: &str = "threads that the axes cut behind a spindle need one that they follow, and this machine has none: a tap goes with G84";
 const PROBING: &str = "write G38.2 for a probe that has to touch, or G38.3 for one that may";
 const OVERRIDES: &str = "programs do not lock the operator's feed override: leave it out, or list it under passed_over in [program] of the machine file";
 
@@ -415,6 +414,10 @@ pub enum Code {
     Boring,
     /// G86.
     BoringWithStop,
+    /// G84: a tap for right-hand threads.
+    Tapping,
+    /// G74: one for left-hand threads.
+    LeftTapping,
     /// G89.
     BoringWithDwell,
     /// G90.
@@ -592,7 +595,7 @@ impl Code {
         ) || self.probes()
     }
 
-    /// G73 and G81 to G89.
+    /// G73, G74 and G81 to G89.
     pub fn is_cycle(self) -> bool {
         matches!(
             self,
@@ -603,6 +606,8 @@ impl Code {
                 | Self::Boring
                 | Self::BoringWithStop
                 | Self::BoringWithDwell
+                | Self::Tapping
+                | Self::LeftTapping
         )
     }
 

@@ -1,4 +1,4 @@
-//! Canned cycles G73 and G81 to G89, as LinuxCNC has them: rapids over a place, feeds into it and back.
+//! Canned cycles G73, G74 and G81 to G89, as LinuxCNC has them: rapids over a place, feeds into it and back.
 //!
 //! Levels are coordinates along the axis of the plane. A cycle that begins below its retract level goes up there first.
 //! After it the tip is at the retract level (G99), or where it was before the first of a run of cycles, if that is
@@ -20,8 +20,8 @@ const PECK_CLEARANCE: f64 = 0.254;
 const MOST: f64 = 10_000.0;
 /// Most pecks of one block.
 const MOST_PECKS: f64 = 100_000.0;
-/// Codes of spindle events in cycles.
-const SPINDLE: &str = "the spindle in a canned cycle";
+/// Code of spindle events in cycles.
+pub(super) const SPINDLE: &str = "the spindle in a canned cycle";
 
 /// Words of a cycle, which hold for the next block with the same one.
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,6 +35,8 @@ pub(super) struct Sticky {
     peck: Option<f64>,
     /// P \[s\].
     dwell: Option<f64>,
+    /// P of the last cycle that had one \[s\]: a tap without P stands so long, as on LinuxCNC.
+    last_dwell: Option<f64>,
     /// Axis of a run of cycles, and the level before the first of them, in the frame of the tip \[mm\].
     initial: Option<(usize, f64)>,
 }
@@ -45,6 +47,7 @@ impl Sticky {
         let initial = self.initial.filter(|_| code.is_some_and(Code::is_cycle));
         *self = Self {
             initial,
+            last_dwell: self.last_dwell,
             ..Self::default()
         };
     }
@@ -52,16 +55,16 @@ impl Sticky {
 
 /// One cycle, over a place.
 #[derive(Clone, Copy)]
-struct Cycle {
-    code: Code,
+pub(super) struct Cycle {
+    pub(super) code: Code,
     axis: usize,
     retract: f64,
-    bottom: f64,
-    clear: f64,
+    pub(super) bottom: f64,
+    pub(super) clear: f64,
     peck: f64,
-    dwell: f64,
+    pub(super) dwell: f64,
     feed: FeedRate,
-    place: SourcePosition,
+    pub(super) place: SourcePosition,
 }
 
 impl Interpreter {
@@ -129,6 +132,10 @@ impl Interpreter {
         let peck = self.sticky.peck;
         let peck = match mode {
             Code::PeckDrilling | Code::ChipBreaking => peck.ok_or_else(|| missing("Q"))?,
+            Code::Tapping | Code::LeftTapping if peck.is_some() => {
+                let (code, why) = (mode.name(), "a tap goes down at once: leave Q out");
+                return Err(Problem::Impossible { code, why }.at(place));
+            }
             _ => 0.0,
         };
         let dwell = match mode {
@@ -139,6 +146,7 @@ impl Interpreter {
                 }
                 dwell.unwrap_or(0.0)
             }
+            Code::Tapping | Code::LeftTapping => self.turning_round(mode, place),
             _ => 0.0,
         };
         let now = self.programmed(&[0, 1, 2], place)?;
@@ -210,6 +218,11 @@ impl Interpreter {
         Ok(true)
     }
 
+    /// P of this cycle or, if it has none, of the last one that had \[s\].
+    pub(super) fn last_dwell(&self) -> Option<f64> {
+        self.sticky.last_dwell
+    }
+
     /// Takes up R, Q, P and the level of the bottom.
     fn keep_words(&mut self, block: &Block, claims: &Claims, mode: Code, axis: usize) -> Result<(), NcError> {
         if self.sticky.code != Some(mode) {
@@ -237,6 +250,7 @@ impl Interpreter {
             }
             self.tell_seconds(mode.name(), p.value, p.place);
             self.sticky.dwell = Some(p.value);
+            self.sticky.last_dwell = Some(p.value);
         }
         Ok(())
     }
@@ -269,6 +283,9 @@ impl Interpreter {
     }
 
     fn hole(&mut self, cycle: &Cycle) -> Result<(), NcError> {
+        if matches!(cycle.code, Code::Tapping | Code::LeftTapping) {
+            return self.tap(cycle);
+        }
         let Cycle {
             retract,
             bottom,
@@ -338,7 +355,7 @@ impl Interpreter {
         Ok(())
     }
 
-    fn cycle_feed(&mut self, cycle: &Cycle, level: f64) -> Result<(), NcError> {
+    pub(super) fn cycle_feed(&mut self, cycle: &Cycle, level: f64) -> Result<(), NcError> {
         self.go_to_level(cycle.axis, level, Some(cycle.feed), cycle.place)
     }
 

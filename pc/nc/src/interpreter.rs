@@ -91,6 +91,8 @@ pub(super) struct Interpreter {
     pub(super) paths: Vec<ProgramPath>,
     /// The next motion that feeds continues along the last path.
     pub(super) open: bool,
+    /// A thread is tapped: nobody overrides the feed.
+    pub(super) fixed_feed: bool,
     pub(super) saved: Vec<Saved>,
     /// Weld data that was called so far, by name.
     pub(super) welds: Vec<String>,
@@ -150,6 +152,7 @@ impl Interpreter {
             dwell: None,
             paths: Vec::new(),
             open: false,
+            fixed_feed: false,
             saved: Vec::new(),
             welds: Vec::new(),
             welding: false,
@@ -549,6 +552,7 @@ impl Interpreter {
             targets: Vec::new(),
             events: events.into_iter().map(|pending| pending.event(0)).collect(),
             probe: None,
+            fixed_feed: false,
             rest: None,
         });
         self.open = false;

@@ -52,6 +52,7 @@ mod setup;
 mod siemens;
 mod source;
 mod subroutines;
+mod tapping;
 #[cfg(test)]
 mod tests;
 pub mod text;

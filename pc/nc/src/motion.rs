@@ -545,6 +545,7 @@ impl Interpreter {
             },
             events: self.pending.drain(..).map(|pending| pending.event(0)).collect(),
             probe: None,
+            fixed_feed: self.fixed_feed,
             rest: None,
         });
     }

@@ -147,15 +147,15 @@ impl Spindle {
         }
     }
 
-    /// It turns as with M3, at the S that was said.
+    /// It turns at the S that was said.
     pub(super) fn start(
         &mut self,
+        turn: Turn,
         code: &'static str,
         place: SourcePosition,
     ) -> Result<[Pending; 2], NcError> {
         let word = "S before it, as it turns the spindle";
         let speed = self.speed.ok_or(Problem::Missing { code, word }.at(place))?;
-        let turn = Turn::Clockwise;
         self.turns = Some(turn);
         let event = |action| Pending {
             action,

@@ -77,6 +77,8 @@ pub struct ProgramPath {
     pub events: Vec<ProgramEvent>,
     /// An input ends it before its end: a path of one straight motion, or one that has moved nothing.
     pub probe: Option<Probe>,
+    /// Neither the feed override nor the speed that an operator wants of welds changes its feed: a thread is tapped.
+    pub fixed_feed: bool,
     /// The blocks of a long path that are not in `targets`; they are read again when they are needed.
     pub rest: Option<RemainingBlocks>,
 }

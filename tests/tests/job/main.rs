@@ -15,6 +15,7 @@ mod silence;
 mod single_block;
 mod spooled;
 mod subscribers;
+mod tapping;
 mod taught_seam;
 mod verdict;
 mod waits;

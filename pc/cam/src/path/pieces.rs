@@ -31,8 +31,8 @@ impl Planner {
         stand: &mut RestState,
         speed_mm_s: Option<f64>,
     ) -> Result<Vec<PlannedPath>, PathError> {
-        // What an operator wants of a weld is nothing for a probe.
-        let speed_mm_s = speed_mm_s.filter(|_| path.probe.is_none());
+        // What an operator wants of a weld is nothing for a probe or a tap.
+        let speed_mm_s = speed_mm_s.filter(|_| path.probe.is_none() && !path.fixed_feed);
         let joined;
         let path = if path.motion == Motion::Feed && (self.tracks || path.rest.is_none()) {
             joined = self.without_short_blocks(path.whole()?, stand)?;
@@ -49,6 +49,9 @@ impl Planner {
         };
         self.check_inputs(&path.waits_before)?;
         planned[0].probe = path.probe;
+        planned
+            .iter_mut()
+            .for_each(|planned| planned.fixed_feed = path.fixed_feed);
         planned[0].waits_before = path.waits_before.clone();
         planned[0].dwell_before_s = path.dwell_before_s;
         Ok(planned)

@@ -20,6 +20,8 @@ pub struct PlannedPath {
     pub dwell_before_s: f64,
     /// An input ends it before its end.
     pub probe: Option<Probe>,
+    /// It runs without the feed override.
+    pub fixed_feed: bool,
     /// The path begins at a corner of this much within a path of the program, which is too sharp to continue
     /// without a stop \[°\].
     pub corner_deg: Option<f64>,
@@ -116,6 +118,7 @@ impl PlannedPath {
             waits_before: Vec::new(),
             dwell_before_s: 0.0,
             probe: None,
+            fixed_feed: false,
             corner_deg: None,
             knots: shape.knots.clone(),
             lines: shape

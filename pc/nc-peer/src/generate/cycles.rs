@@ -2,14 +2,18 @@
 
 use super::writer::Writer;
 
-/// G73 and G81 to G89, at some places, with what may stand beside them.
+/// G73, G74 and G81 to G89, in G17 (in other planes `rs274` exchanges the axes of a tap), at some places, with what may stand beside them.
 pub fn cycle(writer: &mut Writer) {
     let unit = if writer.inches { 1.0 / 25.4 } else { 1.0 };
     let (retract, depth) = (writer.random.within(1.0, 6.0), writer.random.within(-12.0, -1.0));
     writer.block(&format!("G90 G17 G0 Z{:.4}", 15.0 * unit));
-    let code = *writer.random.of(&[73, 81, 81, 81, 82, 83, 83, 85, 86, 88, 89]);
-    if matches!(code, 86 | 88) {
-        writer.block("M3 S800");
+    let code = *writer
+        .random
+        .of(&[73, 74, 81, 81, 81, 82, 83, 83, 84, 84, 85, 86, 88, 89]);
+    match code {
+        84 | 86 | 88 => writer.block("M3 S800"),
+        74 => writer.block("M4 S800"),
+        _ => {}
     }
     let level = *writer.random.of(&["G98", "G99", ""]);
     let mut words = format!("{level} G{code}");
@@ -28,7 +32,8 @@ pub fn cycle(writer: &mut Writer) {
     if matches!(code, 73 | 83) {
         words += &format!(" Q{:.4}", writer.random.within(0.7, 4.0) * unit);
     }
-    if matches!(code, 82 | 86 | 88 | 89) {
+    let may_dwell = matches!(code, 74 | 84) && writer.random.percent(70);
+    if may_dwell || matches!(code, 82 | 86 | 88 | 89) {
         words += &format!(" P{:.2}", writer.random.within(0.1, 1.0));
     }
     if writer.random.percent(25) {

@@ -9,6 +9,7 @@ use crate::outputs::LONGEST_DWELL_S;
 use crate::parameters::Lookup;
 use crate::program::{FeedRate, PathControl};
 use crate::scanner::Scanner;
+use shared::geometry::Turn;
 
 /// Most pecks of a hole.
 const MOST_PECKS: usize = 10_000;
@@ -306,7 +307,7 @@ impl Interpreter {
         let above = (drilling.reference + drilling.distance) * unit;
         let (bottom, retract) = (drilling.bottom * unit, drilling.retract * unit);
         if drilling.stops && self.spindle.turns().is_none() {
-            for event in self.spindle.start(name, place)? {
+            for event in self.spindle.start(Turn::Clockwise, name, place)? {
                 self.wait(event);
             }
         }

@@ -17,6 +17,7 @@ mod probing;
 mod reading;
 mod siemens;
 mod tape_marks;
+mod tapping;
 mod tool_length;
 mod waits;
 

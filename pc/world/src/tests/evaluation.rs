@@ -101,6 +101,7 @@ fn planned() -> PlannedPath {
         waits_before: Vec::new(),
         dwell_before_s: 0.0,
         probe: None,
+        fixed_feed: false,
         corner_deg: None,
         knots: knots.collect(),
         lines: vec![],

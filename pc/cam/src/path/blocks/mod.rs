@@ -80,6 +80,7 @@ impl Planner {
             waits_before: Vec::new(),
             dwell_before_s: 0.0,
             probe: None,
+            fixed_feed: false,
             corner_deg: None,
             knots: Vec::new(),
             lines: vec![(summary.length_mm, summary.lines.1)],

@@ -260,6 +260,7 @@ fn standing(actions: &[PathAction], dwell_before_s: f64, place: SourcePosition) 
             .map(|action| output(0, 0.0, *action, place))
             .collect(),
         probe: None,
+        fixed_feed: false,
         rest: None,
     }
 }
@@ -272,6 +273,7 @@ fn feeding(targets: Vec<Target>, events: Vec<ProgramEvent>, dwell_before_s: f64)
         targets,
         events,
         probe: None,
+        fixed_feed: false,
         rest: None,
     }
 }
