@@ -44,8 +44,10 @@ struct Canon {
     unit: f64,
     /// As it is printed.
     feed: f64,
-    /// The same \[mm/min\].
+    /// The same \[mm/min\], or with G95 \[mm/r\].
     feed_mm: f64,
+    /// G95.
+    per_revolution: bool,
     /// Axis that arcs go about.
     axis: usize,
     /// Of the tool, of the coordinate system, of G92 and of rotation about Z.
@@ -62,6 +64,7 @@ impl Default for Canon {
             unit: 1.0,
             feed: 0.0,
             feed_mm: 0.0,
+            per_revolution: false,
             axis: 2,
             tool: [0.0; 6],
             origin: [0.0; 6],
@@ -91,6 +94,7 @@ impl Canon {
                 self.feed = number(words, 0)?;
                 self.feed_mm = self.feed * self.unit;
             }
+            "SET_FEED_MODE" => self.per_revolution = number(words, 1)? == 1.0,
             "STRAIGHT_TRAVERSE" => self.straight(Kind::Rapid, words)?,
             "STRAIGHT_FEED" => self.straight(Kind::Line, words)?,
             "STRAIGHT_PROBE" => self.straight(Kind::Probe, words)?,
@@ -144,7 +148,7 @@ impl Canon {
             middle: None,
             feed: match kind {
                 Kind::Rapid => None,
-                _ => self.known(if turns { self.feed } else { self.feed_mm }),
+                _ => self.known(if turns { self.feed } else { self.mm_min() }),
             },
             line: 0,
         });
@@ -153,6 +157,14 @@ impl Canon {
 
     fn known(&self, feed: f64) -> Option<f64> {
         (self.feed != LEAST_FEED).then_some(feed)
+    }
+
+    /// The feed of a motion that moves the tip \[mm/min\].
+    fn mm_min(&self) -> f64 {
+        match self.per_revolution {
+            true => self.feed_mm * self.list.speed(),
+            false => self.feed_mm,
+        }
     }
 
     /// First and second end, first and second coordinate of the centre, turns, end along the axis, A B C.
@@ -190,7 +202,7 @@ impl Canon {
             to: Some(self.to_work(to)),
             length: measured.map(|(length, _)| length),
             middle: measured.map(|(_, middle)| in_work(middle)),
-            feed: self.known(self.feed_mm),
+            feed: self.known(self.mm_min()),
             line: 0,
         };
         self.list.motion(motion);

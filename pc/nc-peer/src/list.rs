@@ -142,6 +142,11 @@ impl List {
         self.items.push(Item::Tool(number));
     }
 
+    /// That of the spindle, which may be off.
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
     pub fn spindle_speed(&mut self, speed: f64) {
         self.spindle(self.turn, speed);
     }

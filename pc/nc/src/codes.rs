@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 142] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 143] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -95,6 +95,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 142] = [
     ('G', 923, Code::RestoreOffset, "G92.3", Group::NonModal),
     ('G', 930, Code::InverseTime, "G93", Group::FeedMode),
     ('G', 940, Code::PerMinute, "G94", Group::FeedMode),
+    ('G', 950, Code::PerRevolution, "G95", Group::FeedMode),
     ('G', 970, Code::SpindleSpeed, "G97", Group::SpindleMode),
     ('G', 980, Code::ToInitialLevel, "G98", Group::ReturnLevel),
     ('G', 990, Code::ToRetractLevel, "G99", Group::ReturnLevel),
@@ -153,7 +154,7 @@ const fn probe(away: bool, must: bool) -> Code {
 }
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 29] = [
+const REFUSED: [(char, u32, &str); 28] = [
     ('G', 70, LATHE),
     ('G', 120, POCKET),
     ('G', 130, POCKET),
@@ -191,11 +192,6 @@ const REFUSED: [(char, u32, &str); 29] = [
         'G',
         880,
         "boring with a retract by hand is not supported: write G86",
-    ),
-    (
-        'G',
-        950,
-        "feed per revolution is not supported: write G94 and F in units per minute",
     ),
     (
         'G',
@@ -440,6 +436,8 @@ pub enum Code {
     InverseTime,
     /// G94.
     PerMinute,
+    /// G95.
+    PerRevolution,
     /// G97.
     SpindleSpeed,
     /// G98.
@@ -531,7 +529,7 @@ pub enum Group {
     Distance,
     /// G90.1 G91.1.
     CentreDistance,
-    /// G93 G94.
+    /// G93 G94 G95.
     FeedMode,
     /// G97.
     SpindleMode,

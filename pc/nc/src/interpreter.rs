@@ -344,7 +344,14 @@ impl Interpreter {
         if !turns_only {
             self.feed_of_machine(mode.name(), place);
         }
-        self.modal.feed_rate(block, mode, place, turns_only)
+        let rpm = self.rpm();
+        self.modal.feed_rate(block, mode, place, turns_only, rpm)
+    }
+
+    /// How fast the spindle turns \[r/min\]; of a laser S is its power.
+    pub(super) fn rpm(&self) -> Option<f64> {
+        let turns = self.spindle.turns().is_some() && self.setup.laser.is_none();
+        turns.then(|| self.spindle.speed())
     }
 
     /// A program that feeds by `code` without having said any F has the feed of the machine file, if that says one.

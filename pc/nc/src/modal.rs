@@ -14,15 +14,17 @@ pub(super) const INCH: f64 = 25.4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FeedMode {
     PerMinute,
+    PerRevolution,
     InverseTime,
 }
 
-/// F of G94.
+/// F of G94 and G95.
 #[derive(Clone, Copy, Debug)]
 struct Feed {
     /// As it is written, in degrees a minute where only rotary axes turn.
     written: f64,
-    mm_min: f64,
+    /// In a minute or in a revolution.
+    mm: f64,
 }
 
 /// Modes of a program.
@@ -106,6 +108,7 @@ impl Modal {
             match code.code {
                 Code::InverseTime => self.set_feed_mode(FeedMode::InverseTime),
                 Code::PerMinute => self.set_feed_mode(FeedMode::PerMinute),
+                Code::PerRevolution => self.set_feed_mode(FeedMode::PerRevolution),
                 // Before a motion of its block.
                 Code::CancelMotion => self.end_cycle(),
                 _ => {}
@@ -117,9 +120,9 @@ impl Modal {
                 return Err(f.value_error("the feed must be above 0"));
             }
             self.feed_said = true;
-            if self.feed_mode == FeedMode::PerMinute {
-                let (written, mm_min) = (f.value, f.value * self.unit());
-                self.feed = (written > 0.0).then_some(Feed { written, mm_min });
+            if self.feed_mode != FeedMode::InverseTime {
+                let (written, mm) = (f.value, f.value * self.unit());
+                self.feed = (written > 0.0).then_some(Feed { written, mm });
             }
         }
         for code in &block.codes {
@@ -189,7 +192,7 @@ impl Modal {
         let begins = !self.feed_said && self.feed_mode == FeedMode::PerMinute && self.feed.is_none();
         if begins {
             let written = mm_min / self.unit();
-            self.feed = Some(Feed { written, mm_min });
+            self.feed = Some(Feed { written, mm: mm_min });
         }
         begins
     }
@@ -202,22 +205,27 @@ impl Modal {
         }
     }
 
-    /// F for a motion of `mode` in `block`, which begins at `place` and turns rotary axes alone or moves the tip.
+    /// F for a motion of `mode` in `block`, which begins at `place` and turns rotary axes alone or moves the tip, with a spindle that
+    /// turns at `rpm`, if it does.
     pub(super) fn feed_rate(
         &self,
         block: &Block,
         mode: Code,
         place: SourcePosition,
         turns_only: bool,
+        rpm: Option<f64>,
     ) -> Result<FeedRate, NcError> {
         match self.feed_mode {
-            FeedMode::PerMinute => {
+            FeedMode::PerMinute if turns_only => {
                 let feed = self.feed.ok_or(Problem::NoFeed(mode.name()).at(place))?;
-                Ok(FeedRate::PerMinute(if turns_only {
-                    feed.written
-                } else {
-                    feed.mm_min
-                }))
+                Ok(FeedRate::PerMinute(feed.written))
+            }
+            FeedMode::PerRevolution if turns_only => {
+                let (code, why) = ("G95", "rotary axes alone have no feed per revolution: write G94");
+                Err(Problem::Impossible { code, why }.at(place))
+            }
+            FeedMode::PerMinute | FeedMode::PerRevolution => {
+                self.mm_min(mode.name(), place, rpm).map(FeedRate::PerMinute)
             }
             FeedMode::InverseTime => {
                 let f = block.word("F");
@@ -240,9 +248,34 @@ impl Modal {
         self.feed_mode == FeedMode::InverseTime
     }
 
-    /// F of G94 \[mm/min\].
-    pub(super) fn mm_min(&self) -> Option<f64> {
-        self.feed.map(|feed| feed.mm_min)
+    /// Whether F is the way of a revolution of the spindle.
+    pub(super) fn per_revolution(&self) -> bool {
+        self.feed_mode == FeedMode::PerRevolution
+    }
+
+    /// F of G94, or of G95 with a spindle that turns at `rpm`, if it does \[mm/min\].
+    pub(super) fn mm_min(
+        &self,
+        code: &'static str,
+        place: SourcePosition,
+        rpm: Option<f64>,
+    ) -> Result<f64, NcError> {
+        let feed = self.feed.ok_or(Problem::NoFeed(code).at(place))?;
+        if self.feed_mode != FeedMode::PerRevolution {
+            return Ok(feed.mm);
+        }
+        let (code, why) = (
+            "G95",
+            "F is the way of a revolution of the spindle, which does not turn: write S and M3 before",
+        );
+        let rpm = rpm.filter(|rpm| *rpm > 0.0);
+        rpm.map(|rpm| feed.mm * rpm)
+            .ok_or(Problem::Impossible { code, why }.at(place))
+    }
+
+    /// F in mm, of a minute or a revolution.
+    pub(super) fn feed_mm(&self) -> Option<f64> {
+        self.feed.map(|feed| feed.mm)
     }
 
     /// F as it is written, 0 before.

@@ -104,7 +104,8 @@ impl Runner {
         let (acceleration, jerk) = (path.limits.acceleration, path.limits.jerk);
         let limits = self.board.plan_limits(&path.path_limits());
         self.planner.start(&limits, path.space, path.start_s, &self.axes);
-        self.planner.set_override(if path.fixed_feed { 1.0 } else { self.factor });
+        self.planner
+            .set_override(if path.fixed_feed { 1.0 } else { self.factor });
         let mut stream = Stream::new(path.given_legs());
         let mut around = Around::from(path.start_s);
         let requests = stream.begin(&mut self.planner, |element| around.add(element))?;

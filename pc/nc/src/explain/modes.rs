@@ -127,14 +127,18 @@ fn modal(before: &Before, after: &Interpreter, moves: bool) -> Vec<String> {
     );
     let mode = if new.inverse_time() {
         "1/F minutes of its block (G93)"
+    } else if new.per_revolution() {
+        "the way of a revolution of the spindle (G95)"
     } else {
         "a speed (G94)"
     };
-    change(old.inverse_time() != new.inverse_time(), format!("F is {mode}"));
-    if let Some(feed) = new.mm_min() {
+    let [was, is] = [old, new].map(|modal| (modal.inverse_time(), modal.per_revolution()));
+    change(was != is, format!("F is {mode}"));
+    if let Some(feed) = new.feed_mm() {
+        let unit = if new.per_revolution() { "mm/r" } else { "mm/min" };
         change(
-            old.mm_min() != Some(feed),
-            format!("feed from here: {} mm/min", figure(feed)),
+            old.feed_mm() != Some(feed),
+            format!("feed from here: {} {unit}", figure(feed)),
         );
     }
     changes

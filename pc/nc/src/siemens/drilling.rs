@@ -299,7 +299,7 @@ impl Interpreter {
         if drilling.feeds.is_none() {
             self.feed_of_machine(name, place);
         }
-        let own = self.modal.mm_min().ok_or(Problem::NoFeed(name).at(place));
+        let own = self.modal.mm_min(name, place, self.rpm());
         let [feed_in, feed_out] = match drilling.feeds {
             Some([a, b]) if a > 0.0 && b > 0.0 => [a * unit, b * unit],
             _ => [own.clone()?; 2],

@@ -41,6 +41,39 @@ fn blocks_know_how_closely_they_are_followed() {
 }
 
 #[test]
+fn feeds_per_revolution_go_with_the_speed_of_the_spindle() {
+    let feeds = |body: &str| -> Vec<f64> {
+        let program = run(body).unwrap();
+        let targets = program.paths.iter().flat_map(|path| &path.targets);
+        let feeds = targets.filter_map(|target| target.feed);
+        feeds
+            .map(|feed| match feed {
+                FeedRate::PerMinute(feed) => feed,
+                other @ FeedRate::InverseTime(_) => panic!("{other:?}"),
+            })
+            .collect()
+    };
+    let body = "S500 M3\nG95 F0.2\nG1 X10\nS1000\nX20\nG81 X30 Z-3 R0\nG94\nG1 F300 X40\nM2";
+    assert_eq!(feeds(body), [100.0, 200.0, 200.0, 300.0]);
+    assert_eq!(feeds("G20\nS100 M4\nG95 G1 X1 F0.01\nM2"), [25.4]);
+    for (body, why) in [
+        (
+            "G95 F0.2\nG1 X10",
+            "G95: F is the way of a revolution of the spindle, which does not turn",
+        ),
+        ("S500 M3\nG95 F0.2\nM5\nG1 X10", "which does not turn"),
+        (
+            "S500 M3\nG95 F0.2\nG1 B10",
+            "rotary axes alone have no feed per revolution",
+        ),
+        ("S500 M3\nF600\nG95\nG1 X10", "needs a feed"),
+    ] {
+        let said = run(&format!("{body}\nM2")).unwrap_err().to_string();
+        assert!(said.contains(why), "{said}");
+    }
+}
+
+#[test]
 fn feeds_are_per_minute_or_the_time_of_their_block() {
     let feeds = |body: &str| -> Vec<_> { targets(body).iter().map(|target| target.feed.unwrap()).collect() };
     let (mm_min, time) = (FeedRate::PerMinute, FeedRate::InverseTime);
