@@ -13,7 +13,7 @@ use super::{CAPACITY, NOWHERE, PathError, PlannedPath, Planner, Tip, TooFast};
 use nc::{Blend, Motion, PathControl, ProgramPath, SourcePosition, Target, Way};
 use shared::io::{AXES, SIDES};
 use shared::kinematics::AXIS_UNIT;
-use shared::protocol::PathEvent;
+use shared::protocol::{PathAction, PathEvent};
 use shared::trajectory::PathSpace;
 use std::sync::Arc;
 
@@ -83,13 +83,31 @@ impl Planner {
         let switched = path.events.first().map(|event| event.place);
         let place = switched.or(path.waits_before.first().map(|wait| wait.place));
         let place = place.unwrap_or(NOWHERE);
-        // Not in axis space, where boards open no gates.
-        let pose = self.kinematics.forward(&stand.axes);
-        let shape = Shape::standing(channels(&pose, &stand.tip.extension_mm), place);
-        let mut planned = PlannedPath::untimed(&shape, PathSpace::Tool, Motion::Stand);
+        let (events, steps) = on_the_way(&stand.switched, events, 0, &[0.0], &[], place)?;
+        // In axis space boards open no gates; in that of the tool they do not stand where axes have led it beyond a pole.
+        let opens = |event: &PathEvent| {
+            matches!(
+                event.action,
+                PathAction::Beam { on: true, .. } | PathAction::Tracking { on: true }
+            )
+        };
+        let extension_mm = &stand.tip.extension_mm;
+        let (shape, space) = if events.iter().any(opens) {
+            let pose = self.kinematics.forward(&stand.axes);
+            (
+                Shape::standing(channels(&pose, extension_mm), place),
+                PathSpace::Tool,
+            )
+        } else {
+            (
+                Shape::of_axes(&stand.axes, &stand.axes, extension_mm, place),
+                PathSpace::Axes,
+            )
+        };
+        let mut planned = PlannedPath::untimed(&shape, space, Motion::Stand);
         let demands = self.demands(&planned, &shape, &stand.axes)?;
         planned.limits = self.rapid_limits(&demands);
-        (planned.events, planned.steps) = on_the_way(&stand.switched, events, 0, &[0.0], &[], place)?;
+        (planned.events, planned.steps) = (events, steps);
         stand.switched.take_up(&planned.events);
         Ok(planned)
     }

@@ -68,8 +68,32 @@ fn switching_at_rest_moves_no_axis_of_any_machine() {
     }
     let paths = stir("M3 S600\nG53 G0 Z300").unwrap();
     let motions: Vec<_> = paths[2..].iter().map(|path| (path.motion, path.space)).collect();
-    let stand = (Motion::Stand, PathSpace::Tool);
-    assert_eq!(motions, [stand, (Motion::Rapid, PathSpace::Axes), stand]);
+    // The last one only switches off.
+    let expected = [
+        (Motion::Stand, PathSpace::Tool),
+        (Motion::Rapid, PathSpace::Axes),
+        (Motion::Stand, PathSpace::Axes),
+    ];
+    assert_eq!(motions, expected);
+}
+
+/// There the pose of the tool is that of other axes.
+#[test]
+fn a_machine_stands_where_its_axes_have_led_it_beyond_a_pole() {
+    let paths = plan_on(
+        "pipe-welder",
+        "G0 X120 Z200 B0\nG53 G0 X40\nM64 P3\nG4 P0.3\nM65 P3\nM2",
+    )
+    .unwrap();
+    let stands = paths.iter().filter(|path| path.motion == Motion::Stand);
+    assert_eq!(stands.count(), 2);
+    let seen = followed("pipe-welder", &paths, 0.1);
+    for (_, _, axes) in seen
+        .iter()
+        .filter(|(path, ..)| paths[*path].motion == Motion::Stand)
+    {
+        assert!((axes[0] - 40.0).abs() < 1e-9, "{axes:?}");
+    }
 }
 
 #[test]
