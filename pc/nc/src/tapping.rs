@@ -16,6 +16,13 @@ impl Interpreter {
             Code::LeftTapping => (Turn::CounterClockwise, Turn::Clockwise, "M4"),
             _ => (Turn::Clockwise, Turn::CounterClockwise, "M3"),
         };
+        if self.setup.laser.is_some() {
+            let (code, why) = (
+                cycle.code.name(),
+                "M3, M4 and M5 switch a beam here: taps need a spindle",
+            );
+            return Err(Problem::Impossible { code, why }.at(place));
+        }
         let before = self.spindle.turns();
         let event = |action| Pending {
             action,

@@ -155,3 +155,14 @@ fn a_beam_is_told_as_one() {
     }
     assert!(told.iter().all(|fact| !fact.contains("spindle turns")));
 }
+
+#[test]
+fn a_beam_taps_no_thread() {
+    let said = read("G21 G90\nG0 X0 Y0 Z10\nS500 M3\nF500\nG84 X1 Z-5 R2\nM2").unwrap_err();
+    assert!(
+        said.contains("M3, M4 and M5 switch a beam here: taps need a spindle"),
+        "{said}"
+    );
+    let said = read("G21 G90\nG0 X0 Y0 Z10\nS500 M3\nG95 F0.5\nG1 X1\nM2").unwrap_err();
+    assert!(said.contains("which does not turn"), "{said}");
+}
