@@ -108,7 +108,7 @@ impl List {
         let stays = stays && !self.after_curve;
         self.at = motion.to;
         self.after_curve = motion.kind == Kind::Curve;
-        if stays && matches!(motion.kind, Kind::Rapid | Kind::Line) {
+        if stays && matches!(motion.kind, Kind::Rapid | Kind::Line | Kind::Probe) {
             return;
         }
         self.items.append(&mut self.held);
