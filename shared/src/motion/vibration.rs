@@ -10,8 +10,8 @@ const WEIGHT: f32 = 1.0 / 1024.0;
 /// hard start or stop leaves of itself is gone before.
 const MOST: f32 = 2.0;
 
-/// Root mean square of a motor's following error above 10 Hz (mm or rad), and the highest so far. Single precision, with the root
-/// of micromath, is good enough here and nowhere else: it is off by per cents.
+/// Root mean square of a motor's following error above 10 Hz (mm or rad), and the highest so far. Single precision is good enough here and
+/// nowhere else, and for what is told of it the root of micromath, which is off by per cents; the limit is compared without it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vibration {
     slow: f32,

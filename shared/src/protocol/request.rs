@@ -569,7 +569,7 @@ pub struct MotionStatus {
     /// Datagrams that could not be sent.
     pub unsent: u32,
     /// Highest vibration of each motor since there are parameters: root mean square of its following error above 10 Hz (mm or
-    /// degrees, to some per cent).
+    /// degrees, to some per cent), no more than twice its limit.
     pub vibration: [f32; MOTORS],
 }
 

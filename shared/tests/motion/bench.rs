@@ -171,14 +171,22 @@ impl Bench {
     }
 
     pub fn configured() -> Self {
+        Self::configured_as(config())
+    }
+
+    pub fn configured_as(config: MotionConfig) -> Self {
         let mut bench = Self::new();
-        bench.done(&Request::ConfigureMotion(config()));
+        bench.done(&Request::ConfigureMotion(config));
         bench.run_ms(3);
         bench
     }
 
     pub fn homed() -> Self {
-        let mut bench = Self::configured();
+        Self::homed_as(config())
+    }
+
+    pub fn homed_as(config: MotionConfig) -> Self {
+        let mut bench = Self::configured_as(config);
         bench.done(&Request::Home);
         bench.until(State::Idle, 5000);
         bench

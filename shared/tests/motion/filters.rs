@@ -21,12 +21,7 @@ fn filtered() -> Bench {
         depth: 0.1,
     };
     motor.notches.push(notch).unwrap();
-    let mut bench = Bench::new();
-    bench.done(&Request::ConfigureMotion(config));
-    bench.run_ms(3);
-    bench.done(&Request::Home);
-    bench.until(State::Idle, 5000);
-    bench
+    Bench::homed_as(config)
 }
 
 #[test]

@@ -26,15 +26,6 @@ fn with_outputs() -> MotionConfig {
     config
 }
 
-fn homed(config: MotionConfig) -> Bench {
-    let mut bench = Bench::new();
-    bench.done(&Request::ConfigureMotion(config));
-    bench.run_ms(3);
-    bench.done(&Request::Home);
-    bench.until(State::Idle, 5000);
-    bench
-}
-
 fn event(s_mm: f64, action: PathAction) -> PathEvent {
     PathEvent { s_mm, action }
 }
@@ -133,7 +124,7 @@ fn run_ms(bench: &mut Bench, ms: u32) {
 
 #[test]
 fn lines_are_switched_within_microseconds_of_their_places() {
-    let mut bench = homed(with_outputs());
+    let mut bench = Bench::homed_as(with_outputs());
     weld(&mut bench);
     let mut lines = HeldLines::NONE;
     let mut seen = Vec::new();
@@ -177,7 +168,7 @@ fn lines_are_switched_within_microseconds_of_their_places() {
 
 #[test]
 fn levels_are_led_over_the_path_and_0_where_their_beam_is_shut() {
-    let mut bench = homed(with_outputs());
+    let mut bench = Bench::homed_as(with_outputs());
     weld(&mut bench);
     let mut on_ramp = 0;
     for _ in 0..2500 {
@@ -204,7 +195,7 @@ fn levels_are_led_over_the_path_and_0_where_their_beam_is_shut() {
 #[test]
 fn in_a_hold_gas_flows_on_and_wire_stops_and_a_stop_ends_both() {
     for (stop, flows) in [(Request::Hold, true), (Request::Stop, false)] {
-        let mut bench = homed(with_outputs());
+        let mut bench = Bench::homed_as(with_outputs());
         weld(&mut bench);
         run_ms(&mut bench, 800);
         assert_eq!(
@@ -226,12 +217,12 @@ fn outputs_stay_from_path_to_path_and_end_with_the_drives_or_the_session() {
         bench.run_ms(5);
         assert_eq!(bench.command.outputs, Bits(1));
     };
-    let mut bench = homed(with_outputs());
+    let mut bench = Bench::homed_as(with_outputs());
     gas_on(&mut bench);
     bench.controller.session_ended();
     bench.run_ms(3);
     assert!(bench.command.enable && bench.command.outputs == Bits::NONE);
-    bench = homed(with_outputs());
+    bench = Bench::homed_as(with_outputs());
     gas_on(&mut bench);
     bench.inputs.estop = [true; 2];
     bench.servo_tick();
@@ -245,7 +236,7 @@ fn an_answer_that_is_missing_stops_the_machine_in_its_time() {
         answers: 0,
         within_ms: 40,
     });
-    let mut bench = homed(config);
+    let mut bench = Bench::homed_as(config);
     bench.inputs.process = Bits(0b100);
     weld(&mut bench);
     run_ms(&mut bench, 800);
@@ -273,7 +264,7 @@ fn an_answer_that_is_missing_stops_the_machine_in_its_time() {
 
 #[test]
 fn what_the_machine_does_not_have_is_refused() {
-    let mut bench = homed(with_outputs());
+    let mut bench = Bench::homed_as(with_outputs());
     load(&mut bench, &[]);
     for action in [
         output(2, true),

@@ -137,11 +137,7 @@ fn an_axis_far_beyond_its_travel_trips_and_tells_where_it_is() {
     config.motors[Y].as_mut().unwrap().following_error_base = 10.0;
     let y = config.axes[1].as_mut().unwrap();
     (y.travel_max, y.max_velocity) = (MARK + 1.0, 60.0);
-    let mut bench = Bench::new();
-    bench.done(&Request::ConfigureMotion(config));
-    bench.run_ms(3);
-    bench.done(&Request::Home);
-    bench.until(State::Idle, 5000);
+    let mut bench = Bench::homed_as(config);
     bench.blocked[Y] = true;
     // Twice its way to a stop, v/2·(v/a + a/j) with 60 mm/s, 1000 mm/s² and 20 000 mm/s³.
     let end = MARK + 1.0 + 2.0 * 30.0 * (0.06 + 0.05);

@@ -17,12 +17,7 @@ const SHAKEN_HZ: f64 = 80.0;
 fn watched() -> Bench {
     let mut config = config();
     config.motors[Y].as_mut().unwrap().vibration_limit = LIMIT;
-    let mut bench = Bench::new();
-    bench.done(&Request::ConfigureMotion(config));
-    bench.run_ms(3);
-    bench.done(&Request::Home);
-    bench.until(State::Idle, 5000);
-    bench
+    Bench::homed_as(config)
 }
 
 /// Shakes Y for `ms` by a sine of `amplitude` \[mm\]: the drives are off, or the state is `until`.
