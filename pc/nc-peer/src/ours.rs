@@ -159,12 +159,13 @@ fn motion(from: &Place, target: &Target) -> Motion {
         Way::Axes => (Kind::Rapid, Some(straight(from, &to)), None),
         Way::Line if target.feed.is_none() => (Kind::Rapid, Some(straight(from, &to)), None),
         Way::Line => (Kind::Line, Some(straight(from, &to)), None),
-        Way::Arc(way) => {
-            let (length, middle, of_its_radius) = arc(way, xyz(from), xyz(&to));
+        Way::Arc(way) if let Some(plane) = way.plane() => {
+            let (length, middle, of_its_radius) = arc(way, plane.axis(), xyz(from), xyz(&to));
             of_time = Some(of_its_radius);
             (Kind::Arc, Some(length), Some(middle))
         }
-        Way::Nurbs(_) => (Kind::Curve, None, None),
+        // The peer has no arcs in other planes.
+        Way::Arc(_) | Way::Nurbs(_) => (Kind::Curve, None, None),
     };
     let feed = target.feed.and_then(|feed| match feed {
         FeedRate::PerMinute(rate) => Some(rate),
@@ -183,10 +184,10 @@ fn motion(from: &Place, target: &Target) -> Motion {
     }
 }
 
-/// Length of an arc, the place halfway, and the length with the radius at its start, by which the peer turns a time into a
+/// Length of an arc about the axis of this index, the place halfway, and the length with the radius at its start, by which the peer turns a time into a
 /// feed.
-fn arc(way: &ArcWay, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3], f64) {
-    let (axis, turn) = (way.plane.axis(), way.turn);
+fn arc(way: &ArcWay, axis: usize, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3], f64) {
+    let turn = way.turn;
     let centre = match way.form {
         ArcForm::Centre(offset) => std::array::from_fn(|axis| from[axis] + offset[axis]),
         ArcForm::Radius(radius) => arc::centre(axis, turn, radius, from, to),

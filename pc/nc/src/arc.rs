@@ -31,7 +31,7 @@ pub(super) fn way(
         None => more_turns(claims, mode)?,
     };
     Ok(ArcWay {
-        plane,
+        about: plane.normal(),
         turn,
         form: match known {
             Some(form) => form,

@@ -136,6 +136,8 @@ fn may_have(code: Code) -> &'static [&'static str] {
         Code::QuadraticSpline => &["I", "J"],
         Code::SetOffsets => &["R", "I", "J", "Q"],
         Code::TurnAbout => &["R"],
+        Code::Tilt => &["I", "J", "K", "P", "Q", "R"],
+        Code::ToolToPlane | Code::ToolToPlaneAtTip => &["P"],
         Code::Call => &["L"],
         Code::ToolLength | Code::MoreLength => &["H", "D"],
         Code::Left | Code::LeftBy | Code::Right | Code::RightBy => &["D"],

@@ -2,7 +2,7 @@
 
 /// Codes of the dialect, in tenths, with the name people write and the modal group: two codes of one group
 /// cannot stand in one block.
-pub(super) const CODES: [(char, u32, Code, &str, Group); 143] = [
+pub(super) const CODES: [(char, u32, Code, &str, Group); 146] = [
     ('G', 0, Code::Rapid, "G0", Group::Motion),
     ('G', 10, Code::Feed, "G1", Group::Motion),
     ('G', 20, Code::ArcClockwise, "G2", Group::Motion),
@@ -52,6 +52,8 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 143] = [
     ('G', 511, Code::MirrorAxes, "G51.1", Group::NonModal),
     ('G', 520, Code::LocalOffset, "G52", Group::NonModal),
     ('G', 530, Code::MachineAxes, "G53", Group::NonModal),
+    ('G', 531, Code::ToolToPlane, "G53.1", Group::NonModal),
+    ('G', 536, Code::ToolToPlaneAtTip, "G53.6", Group::NonModal),
     ('G', 540, Code::System(1), "G54", Group::Offset),
     ('G', 550, Code::System(2), "G55", Group::Offset),
     ('G', 560, Code::System(3), "G56", Group::Offset),
@@ -72,6 +74,7 @@ pub(super) const CODES: [(char, u32, Code, &str, Group); 143] = [
     ('G', 6440, Code::WithinTolerance, "G644", Group::PathControl),
     ('G', 6450, Code::WithinTolerance, "G645", Group::PathControl),
     ('G', 680, Code::TurnAbout, "G68", Group::NonModal),
+    ('G', 682, Code::Tilt, "G68.2", Group::NonModal),
     ('G', 690, Code::Hint, "G69", Group::Hint),
     ('G', 700, Code::Inches, "G70", Group::Units),
     ('G', 710, Code::Millimetres, "G71", Group::Units),
@@ -154,7 +157,7 @@ const fn probe(away: bool, must: bool) -> Code {
 }
 
 /// Codes that other controllers have and this one refuses, in tenths, and why.
-const REFUSED: [(char, u32, &str); 28] = [
+const REFUSED: [(char, u32, &str); 27] = [
     ('G', 70, LATHE),
     ('G', 120, POCKET),
     ('G', 130, POCKET),
@@ -178,12 +181,7 @@ const REFUSED: [(char, u32, &str); 28] = [
     (
         'G',
         683,
-        "tilted work planes are not supported: rotate about Z with G68",
-    ),
-    (
-        'G',
-        682,
-        "tilted work planes are not supported: rotate about Z with G68",
+        "planes are not taken from the tool: write G68.2 with angles or points",
     ),
     ('G', 720, LATHE),
     ('G', 760, THREADING),
@@ -368,6 +366,14 @@ pub enum Code {
     MirrorNoMore,
     /// G68: a rotation about a point.
     TurnAbout,
+    /// G68.2: a tilted plane.
+    Tilt,
+    /// CYCLE800, which is a statement.
+    Swivel,
+    /// G53.1: the tool turns to the tilted plane.
+    ToolToPlane,
+    /// G53.6: the same with the tip where it is.
+    ToolToPlaneAtTip,
     /// MIRROR.
     Mirror,
     /// AMIRROR.
@@ -507,7 +513,7 @@ pub enum Group {
     Motion,
     /// G80, which may stand beside a motion.
     CycleEnd,
-    /// G4 G10 G28 G30 G52 G53 G92, TRANS, ROT, MIRROR, SCALE, G110 and theirs, G50.1 G51.1 G68 G100 G101: they are for their block only.
+    /// G4 G10 G28 G30 G52 G53 G92, G53.1 G53.6, TRANS, ROT, MIRROR, SCALE, G110 and theirs, G50.1 G51.1 G68 G68.2 G100 G101: they are for their block only.
     NonModal,
     /// G15 G16.
     Polar,
@@ -626,6 +632,7 @@ impl Code {
                 | Self::MirrorAxes
                 | Self::MirrorNoMore
                 | Self::TurnAbout
+                | Self::Tilt
                 | Self::Mirror
                 | Self::MoreMirror
                 | Self::Scale

@@ -37,8 +37,8 @@ pub(super) struct Sticky {
     dwell: Option<f64>,
     /// P of the last cycle that had one \[s\]: a tap without P stands so long, as on LinuxCNC.
     last_dwell: Option<f64>,
-    /// Axis of a run of cycles, and the level before the first of them, in the frame of the tip \[mm\].
-    initial: Option<(usize, f64)>,
+    /// Axis of a run of cycles, and where the tip was before the first of them.
+    initial: Option<(usize, Coordinates)>,
 }
 
 impl Sticky {
@@ -91,9 +91,6 @@ impl Interpreter {
         if self.modal.inverse_time() {
             let (code, why) = (mode.name(), "a canned cycle has no time: write G94");
             return Err(Problem::Impossible { code, why }.at(place));
-        }
-        if self.offsets.turned() && axis != 2 {
-            return Err(Problem::TiltedArc.at(place));
         }
         let feed = self.feed_rate(block, mode, place, false)?;
         self.keep_words(block, claims, mode, axis)?;
@@ -276,9 +273,7 @@ impl Interpreter {
     fn initial_level(&mut self, axis: usize) -> f64 {
         // In another plane a run begins.
         let kept = self.sticky.initial.filter(|(of, _)| *of == axis);
-        let (_, level) = *self.sticky.initial.insert(kept.unwrap_or((axis, self.at[axis])));
-        let mut tip = self.at;
-        tip[axis] = level;
+        let (_, tip) = *self.sticky.initial.insert(kept.unwrap_or((axis, self.at)));
         self.offsets.to_programmed(&tip)[axis]
     }
 

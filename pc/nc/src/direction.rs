@@ -50,8 +50,8 @@ impl Interpreter {
         if length == 0.0 {
             return Err(Problem::NoDirection.at(place));
         }
-        let [x, y] = self.offsets.direction([x, y]);
-        Ok(Some(([x, y, z].map(|part| part / length), place)))
+        let direction = self.offsets.direction([x, y, z]);
+        Ok(Some((direction.map(|part| part / length), place)))
     }
 
     /// Puts the rotary axes with which the tool points along `direction` at the end of a motion into its `words`.

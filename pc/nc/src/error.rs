@@ -279,11 +279,8 @@ pub enum Problem {
     /// An axis-code that takes the axis words, and a motion.
     #[error("{0} takes the axis words of its block: write the motion in a block of its own")]
     AxesTaken(&'static str),
-    /// An arc that is not in a plane of the machine.
-    #[error("arcs in G18 and G19 are not possible in a coordinate system that is rotated about Z")]
-    TiltedArc,
-    /// An arc with a factor for X and another one for Y.
-    #[error("an arc needs the same factor of SCALE for X and Y: with these it is an ellipse")]
+    /// An arc in a plane whose axes have unlike factors.
+    #[error("an arc needs the same factor of SCALE for both axes of its plane: with these it is an ellipse")]
     StretchedArc,
     /// What is not possible in this mode.
     #[error("{code}: {why}")]

@@ -14,7 +14,7 @@ impl Interpreter {
     /// What of `block` should be known to a person who expects what another controller does.
     pub(super) fn hints(&mut self, block: &Block) {
         for code in block.codes.iter().filter(|code| code.group() == Group::Hint) {
-            if code.name == "G69" && self.end_rotation() {
+            if code.name == "G69" && (self.end_rotation() || self.end_fanuc_tilt()) {
                 continue;
             }
             let why = match code.name {

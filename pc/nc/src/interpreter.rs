@@ -23,6 +23,7 @@ use super::saved_modes::Saved;
 use super::setup::{Options, Setup};
 use super::siemens::corners::Corners;
 use super::siemens::drilling::Drilling;
+use super::tilt::Points;
 use super::tool_length::{Tools, tool};
 use super::waits::Wait;
 use shared::geometry::Turn;
@@ -76,6 +77,7 @@ pub(super) struct Interpreter {
     pub(super) pole: [f64; 3],
     pub(super) corners: Corners,
     pub(super) compensation: Compensation,
+    pub(super) tilt_points: Points,
     pub(super) pending: Vec<Pending>,
     pub(super) burning: Burning,
     /// Waits before the next path, and before its dwell.
@@ -143,6 +145,7 @@ impl Interpreter {
             pole: [0.0; 3],
             corners: Corners::default(),
             compensation: Compensation::default(),
+            tilt_points: Points::default(),
             pending: Vec::new(),
             burning: Burning::default(),
             waits: Vec::new(),

@@ -56,6 +56,7 @@ mod tapping;
 #[cfg(test)]
 mod tests;
 pub mod text;
+mod tilt;
 mod tool_length;
 mod waits;
 

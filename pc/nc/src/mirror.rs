@@ -58,6 +58,7 @@ impl Interpreter {
         let impossible = |why, place| Err(Problem::Impossible { code: name, why }.at(place));
         let foreign = self.offsets.foreign;
         let ends = code == Code::MirrorNoMore;
+        self.check_no_tilt(name, place)?;
         if self.offsets.has_frame() && !foreign.holds() {
             return match ends {
                 true => impossible(
@@ -148,7 +149,7 @@ impl Interpreter {
         let centre = [x.value * unit, y.value * unit, 0.0, 0.0, 0.0, 0.0];
         let mut frame = Frame::default();
         frame.shift(&centre);
-        frame.turn(r.value);
+        frame.turn(2, r.value);
         frame.shift(&centre.map(|value| -value));
         self.offsets.frame = frame;
         let foreign = &mut self.offsets.foreign;
@@ -199,7 +200,10 @@ impl Interpreter {
     /// Refuses another coordinate system while these hold.
     pub(super) fn check_same_system(&self, block: &Block, index: usize) -> Result<(), NcError> {
         match block.code(Group::Offset) {
-            Some(code) if index != self.offsets.active => self.check_no_foreign(code.name, code.place),
+            Some(code) if index != self.offsets.active => {
+                self.check_no_foreign(code.name, code.place)?;
+                self.check_no_fanuc_tilt(code.name, code.place)
+            }
             _ => Ok(()),
         }
     }

@@ -13,8 +13,10 @@ use super::program::{
     AXIS_WORDS, ArcForm, ArcWay, ControlPoint, EXTENSION_WORDS, FeedRate, Motion, NurbsWay, Plane,
     ProgramPath, Target, Way, Words,
 };
-use shared::geometry::Turn;
 use shared::io::AXES;
+
+/// What turning coordinates there and back leaves of a motion to where the tip is, and less than any program says \[mm\].
+const ROUNDING: f64 = 1e-9;
 
 impl Interpreter {
     /// The position in the frame of the tip; the start of the program may be assumed.
@@ -37,10 +39,7 @@ impl Interpreter {
         axes: &[usize],
         place: SourcePosition,
     ) -> Result<Coordinates, NcError> {
-        let at = match axes {
-            [0 | 1] if self.offsets.turned() => self.position(&[0, 1], place)?,
-            _ => self.position(axes, place)?,
-        };
+        let at = self.position(&self.offsets.with_coupled(axes), place)?;
         Ok(self.offsets.to_programmed(&at))
     }
 
@@ -69,14 +68,20 @@ impl Interpreter {
         mut said: [Option<f64>; AXES],
         place: SourcePosition,
     ) -> Result<Words, NcError> {
-        if self.offsets.turned() && (said[0].is_some() != said[1].is_some()) {
-            let now = self.programmed(&[0, 1], place)?;
-            for axis in 0..2 {
-                said[axis] = said[axis].or(Some(now[axis]));
+        if self.offsets.says_in_part(&said) {
+            let coupled = self.offsets.coupled();
+            let now = self.programmed(coupled, place)?;
+            for axis in coupled {
+                said[*axis] = said[*axis].or(Some(now[*axis]));
             }
         }
         self.tell_system(place);
-        let tip = self.offsets.to_tip(&said.map(|value| value.unwrap_or(0.0)));
+        let mut tip = self.offsets.to_tip(&said.map(|value| value.unwrap_or(0.0)));
+        for axis in self.offsets.coupled() {
+            if (tip[*axis] - self.at[*axis]).abs() <= ROUNDING {
+                tip[*axis] = self.at[*axis];
+            }
+        }
         let mut words = Words {
             axes: std::array::from_fn(|axis| said[axis].map(|_| tip[axis])),
             ..Words::default()
@@ -216,7 +221,9 @@ impl Interpreter {
         }
         self.modal.closed = false;
         self.check_reshaped(block, mode.is_cycle(), place)?;
+        self.check_in_plane(block, mode, place)?;
         self.check_both_said(block)?;
+        self.check_whole_plane(place)?;
         let direction = self.direction(block, claims, mode)?;
         if let Some((_, place)) = direction
             && self.offsets.frame.reshapes()
@@ -280,6 +287,29 @@ impl Interpreter {
         Ok(true)
     }
 
+    /// What lies in a plane of X, Y and Z only: contours with an offset, corners, and arcs that go on in the direction before them.
+    fn check_in_plane(&self, block: &Block, mode: Code, place: SourcePosition) -> Result<(), NcError> {
+        let beside = self.compensation.is_on() || self.has_to_come_back();
+        if !beside && mode != Code::TangentArc && self.corner_place(block, place).is_none() {
+            return Ok(());
+        }
+        let plane = self.modal.plane;
+        match self
+            .offsets
+            .arcs(plane)
+            .is_none_or(|arcs| arcs.about == plane.normal())
+        {
+            true => Ok(()),
+            false => {
+                let (code, why) = (
+                    "a tilted plane",
+                    "G41, G42, roundings, chamfers and CT do not lie in it: write their motions out, or turn about the axis of G17, G18 or G19 only",
+                );
+                Err(Problem::Impossible { code, why }.at(place))
+            }
+        }
+    }
+
     /// Rotary axes of the first motion that it does not say.
     fn fill_in_rotary(&mut self, said: &mut [Option<f64>; AXES]) {
         if self.placed {
@@ -303,14 +333,14 @@ impl Interpreter {
     ) -> Result<ArcWay, NcError> {
         let plane = self.modal.plane;
         let mut way = arc::way(claims, mode, plane, place, known)?;
-        let (factor, turn) = self.framed_arc(plane, way.turn, place)?;
-        way.turn = turn;
+        let arcs = self.offsets.arcs(plane).ok_or(Problem::StretchedArc.at(place))?;
+        (way.about, way.turn) = (arcs.about, arcs.turn(way.turn));
         way.form = match way.form {
             // That of an opening angle is in mm.
             ArcForm::Radius(radius) if known.is_none() => {
-                ArcForm::Radius(radius * self.modal.unit() * factor)
+                ArcForm::Radius(radius * self.modal.unit() * arcs.factor)
             }
-            ArcForm::Radius(radius) => ArcForm::Radius(radius * factor),
+            ArcForm::Radius(radius) => ArcForm::Radius(radius * arcs.factor),
             ArcForm::Centre(_) => {
                 let words = arc::CENTRE_WORDS.map(|name| claims.word(mode, name));
                 let [a, b] = plane.axes();
@@ -324,30 +354,10 @@ impl Interpreter {
                 for axis in [a, b] {
                     offset[axis] = self.to_centre(words[axis], now[axis]);
                 }
-                [offset[0], offset[1]] = self.offsets.direction([offset[0], offset[1]]);
-                ArcForm::Centre(offset)
+                ArcForm::Centre(self.offsets.direction(offset))
             }
         };
         Ok(way)
-    }
-
-    /// What the coordinate system and the frame make of an arc: how many times as large it is, and its sense.
-    pub(super) fn framed_arc(
-        &self,
-        plane: Plane,
-        turn: Turn,
-        place: SourcePosition,
-    ) -> Result<(f64, Turn), NcError> {
-        let frame = &self.offsets.frame;
-        if plane != Plane::Xy && (self.offsets.turned() || frame.reshapes()) {
-            return Err(Problem::TiltedArc.at(place));
-        }
-        let (factor, mirrored) = frame.of_arcs().ok_or(Problem::StretchedArc.at(place))?;
-        let other = match turn {
-            Turn::Clockwise => Turn::CounterClockwise,
-            Turn::CounterClockwise => Turn::Clockwise,
-        };
-        Ok((factor, if mirrored { other } else { turn }))
     }
 
     /// G5 and G5.1: one Bézier curve in the plane X Y, to the coordinates `said`.
@@ -375,6 +385,7 @@ impl Interpreter {
         };
         let now = self.programmed(&[0, 1], place)?;
         let start = [now[0], now[1]];
+        let tilted = self.offsets.tilted();
         let end = [said[0].unwrap_or(now[0]), said[1].unwrap_or(now[1])];
         let first = pair(["I", "J"]);
         let plus = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
@@ -403,9 +414,9 @@ impl Interpreter {
             place,
         }];
         for [x, y] in inner.into_iter().chain([end]) {
-            let tip = self.offsets.to_tip(&[x, y, 0.0, 0.0, 0.0, 0.0]);
+            let tip = self.offsets.to_tip(&[x, y, now[2], 0.0, 0.0, 0.0]);
             points.push(ControlPoint {
-                position: [Some(tip[0]), Some(tip[1]), None],
+                position: [Some(tip[0]), Some(tip[1]), Some(tip[2]).filter(|_| tilted)],
                 weight: 1.0,
                 place,
             });
@@ -445,10 +456,10 @@ impl Interpreter {
             for axis in 0..3 {
                 said[axis] = point.position[axis].map(|value| value * unit);
             }
-            // What was said of X or Y before holds on, where both are needed.
-            if self.offsets.turned() && said[0].is_some() != said[1].is_some() {
-                for axis in 0..2 {
-                    said[axis] = said[axis].or(last[axis]);
+            // What was said before holds on, where all of them are needed.
+            if self.offsets.says_in_part(&said) {
+                for axis in self.offsets.coupled() {
+                    said[*axis] = said[*axis].or(last[*axis]);
                 }
             }
             for axis in 0..3 {

@@ -28,7 +28,7 @@ impl Piece {
         let [start, end] = [from, to].map(|at| Vector2::from(plane.axes().map(|axis| at[axis])));
         let arc = match way {
             Way::Line => None,
-            Way::Arc(arc) if arc.plane == plane => Some((centre(arc, start, end)?, arc.turn)),
+            Way::Arc(arc) if arc.about == plane.normal() => Some((centre(arc, plane, start, end)?, arc.turn)),
             Way::Arc(_) | Way::Nurbs(_) | Way::Axes | Way::Wait(_) => return None,
         };
         Some(Self {
@@ -158,9 +158,9 @@ fn either_side(place: Vector2<f64>, along: Vector2<f64>, squared: f64) -> [Optio
 }
 
 /// The centre of an arc between two places of its plane; none if there is no such circle.
-fn centre(arc: &ArcWay, start: Vector2<f64>, end: Vector2<f64>) -> Option<Vector2<f64>> {
+fn centre(arc: &ArcWay, plane: Plane, start: Vector2<f64>, end: Vector2<f64>) -> Option<Vector2<f64>> {
     match arc.form {
-        ArcForm::Centre(offset) => Some(start + Vector2::from(arc.plane.axes().map(|axis| offset[axis]))),
+        ArcForm::Centre(offset) => Some(start + Vector2::from(plane.axes().map(|axis| offset[axis]))),
         ArcForm::Radius(radius) => {
             let chord = end - start;
             let length = chord.norm();

@@ -177,9 +177,9 @@ pub enum Way {
 /// What makes an arc of its two ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArcWay {
-    /// In which plane.
-    pub plane: Plane,
-    /// Seen from the positive end of the plane's axis.
+    /// Axis that it goes about, of length 1; that of a plane where it is along one.
+    pub about: [f64; 3],
+    /// Seen from the end of the axis.
     pub turn: Turn,
     /// Centre or radius.
     pub form: ArcForm,
@@ -199,7 +199,22 @@ pub enum Plane {
     Yz,
 }
 
+impl ArcWay {
+    /// The plane of X, Y and Z that it goes in, if it is one of these.
+    pub fn plane(&self) -> Option<Plane> {
+        let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
+        planes.into_iter().find(|plane| plane.normal() == self.about)
+    }
+}
+
 impl Plane {
+    /// The axis that arcs go about, of length 1.
+    pub fn normal(self) -> [f64; 3] {
+        let mut normal = [0.0; 3];
+        normal[self.axis()] = 1.0;
+        normal
+    }
+
     /// Index of the axis that arcs go about.
     pub fn axis(self) -> usize {
         match self {

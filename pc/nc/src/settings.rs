@@ -5,7 +5,7 @@ use super::claims::Claims;
 use super::codes::{Code, Group};
 use super::error::{NcError, Problem, SourcePosition};
 use super::interpreter::Interpreter;
-use super::offsets::{Coordinates, NO_SYSTEM, SYSTEMS};
+use super::offsets::{Coordinates, NO_SYSTEM, SYSTEMS, linear};
 use super::program::{AXIS_WORDS, Way};
 use shared::io::AXES;
 
@@ -37,6 +37,7 @@ impl Interpreter {
         let other_offsets = matches!(code.code, Code::SetOffsets | Code::LocalOffset | Code::OffsetHere);
         if other_offsets {
             self.check_no_foreign(code.name, place)?;
+            self.check_no_tilt(code.name, place)?;
         }
         if other_offsets && self.offsets.has_frame() {
             let (code, why) = (
@@ -57,6 +58,8 @@ impl Interpreter {
                 self.check_no_foreign(code.name, place)?;
                 self.frame(block, claims, code.code, code.name)?;
             }
+            Code::Tilt => self.tilt(block, claims, place)?,
+            Code::ToolToPlane | Code::ToolToPlaneAtTip => self.turn_tool(claims, code.code, place)?,
             Code::MirrorAxes | Code::MirrorNoMore | Code::TurnAbout => {
                 self.foreign_frame(block, claims, (code.code, code.name), place)?;
             }
@@ -80,10 +83,7 @@ impl Interpreter {
                 }
                 let mut local = self.offsets.local_now();
                 for (axis, value) in values {
-                    let at = match axis {
-                        0 | 1 if self.offsets.turned() => self.position(&[0, 1], place)?,
-                        _ => self.position(&[axis], place)?,
-                    };
+                    let at = self.position(&self.offsets.with_coupled(&[axis]), place)?;
                     local[axis] = self.offsets.in_system(&at)[axis] - value;
                 }
                 (self.offsets.local, self.offsets.local_on) = (local, true);
@@ -159,10 +159,11 @@ impl Interpreter {
             wanted[axis] = value;
         }
         let mut moved: Coordinates = std::array::from_fn(|i| wanted[i] + local[i]);
-        [moved[0], moved[1]] = self.offsets.direction([moved[0], moved[1]]);
-        let turned = self.offsets.turned();
+        let turned = self.offsets.direction(linear(&moved));
+        moved[..3].copy_from_slice(&turned);
+        let coupled = self.offsets.coupled();
         for axis in 0..AXES {
-            if axes.contains(&axis) || (turned && axis < 2) {
+            if axes.contains(&axis) || coupled.contains(&axis) {
                 self.offsets.systems[index].offset[axis] = at[axis] - moved[axis];
             }
         }
@@ -174,9 +175,9 @@ impl Interpreter {
     fn home(&mut self, block: &Block, index: usize, place: SourcePosition) -> Result<(), NcError> {
         self.check_come_back("G28 and G30", place)?;
         let said = self.said(block)?;
-        if self.offsets.turned() && said[0].is_some() != said[1].is_some() {
+        if self.offsets.says_in_part(&said) {
             let code = if index == 0 { "G28" } else { "G30" };
-            let why = "X or Y alone in a rotated coordinate system is read differently by controllers: write both, or end the rotation with G10 L2 P0 R0";
+            let why = "a part of the axes in a rotated coordinate system is read differently by controllers: write X and Y, in a tilted plane Z too, or end the rotation";
             return Err(Problem::Impossible { code, why }.at(place));
         }
         if said.iter().any(Option::is_some) {

@@ -278,7 +278,7 @@ impl Interpreter {
     }
 
     /// From the tip to the machine, along the tool.
-    fn along(&self, at: &Coordinates) -> [f64; 3] {
+    pub(super) fn along(&self, at: &Coordinates) -> [f64; 3] {
         self.direction_at(angles(at))
     }
 

@@ -104,8 +104,7 @@ impl Planner {
 /// The arc of a G2 or G3 block between two tips (RS274/NGC).
 pub(super) fn arc(from: &Tip, to: &Tip, way: &ArcWay, place: SourcePosition) -> Result<Arc, PathError> {
     let [start, end]: [Vector3<f64>; 2] = [from.position_mm.into(), to.position_mm.into()];
-    let mut axis = Vector3::zeros();
-    axis[way.plane.axis()] = 1.0;
+    let axis = way.about.into();
     let to_centre = match way.form {
         ArcForm::Centre(offset) => offset.into(),
         ArcForm::Radius(radius) => radius_to_centre(end - start, &axis, radius, way.turn, place)?,

@@ -76,7 +76,7 @@ impl Interpreter {
         {
             Some(Corner::Around { centre, to, turn }) => {
                 let round = Way::Arc(ArcWay {
-                    plane,
+                    about: plane.normal(),
                     turn,
                     form: ArcForm::Centre(in_plane(plane, centre - start)),
                     more_turns: 0,

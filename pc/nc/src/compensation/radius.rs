@@ -59,7 +59,10 @@ impl Interpreter {
         }
         let left = matches!(code.code, Code::Left | Code::LeftBy);
         // What is mirrored has the tool on the other side.
-        let (_, turn) = self.framed_arc(self.modal.plane, Turn::CounterClockwise, code.place)?;
+        let arcs = self.offsets.arcs(self.modal.plane);
+        let turn = arcs
+            .ok_or(Problem::StretchedArc.at(code.place))?
+            .turn(Turn::CounterClockwise);
         let same = left == (turn == Turn::CounterClockwise);
         Ok(if same { diameter / 2.0 } else { -diameter / 2.0 })
     }

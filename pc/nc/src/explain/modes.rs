@@ -179,11 +179,19 @@ fn offsets(before: &Before, after: &Interpreter) -> Vec<String> {
     }
     if old.frame != new.frame {
         let origin = of_fitted(&new.frame.offset, after);
-        let frame = format!(
-            "frame (TRANS, ROT, MIRROR, SCALE): origin at {origin}, {}",
-            new.frame.words()
-        );
-        changes.push(frame);
+        let turned = match new.frame.turned_about_z() {
+            Some(degrees) => format!("turned by {} deg about Z", figure(degrees)),
+            None => {
+                let [x, y, z] = new
+                    .frame
+                    .axes()
+                    .map(|[x, y, z]| format!("[{}, {}, {}]", figure(x), figure(y), figure(z)));
+                format!("X leads to {x}, Y to {y}, Z to {z}")
+            }
+        };
+        changes.push(format!(
+            "frame (TRANS and the like, a tilted plane): origin at {origin}, {turned}"
+        ));
     }
     let local = new.local_now();
     if old.local_now() != local {

@@ -239,7 +239,13 @@ fn arc(way: &ArcWay, start: &Coordinates) -> String {
         Turn::Clockwise => "clockwise",
         Turn::CounterClockwise => "counter-clockwise",
     };
-    let axis = AXIS_NAMES[way.plane.axis()];
+    let axis = match way.plane() {
+        Some(plane) => AXIS_NAMES[plane.axis()].to_owned(),
+        None => {
+            let [x, y, z] = way.about.map(figure);
+            format!("[{x}, {y}, {z}]")
+        }
+    };
     let turns = match way.more_turns {
         0 => String::new(),
         more => format!(", {more} full turns more"),
@@ -250,7 +256,7 @@ fn arc(way: &ArcWay, start: &Coordinates) -> String {
             format!("radius {} mm, the {which} one", figure(radius.abs()))
         }
         ArcForm::Centre(offset) => {
-            let in_plane = in_plane(way.plane);
+            let in_plane = way.plane().map_or(&[0, 1, 2][..], in_plane);
             let radius = in_plane.iter().map(|axis| offset[*axis]).fold(0.0, f64::hypot);
             let mut centre = [None; AXES];
             in_plane
@@ -267,10 +273,10 @@ fn arc(way: &ArcWay, start: &Coordinates) -> String {
 }
 
 /// The axes of a plane.
-fn in_plane(plane: Plane) -> [usize; 2] {
+fn in_plane(plane: Plane) -> &'static [usize] {
     match plane {
-        Plane::Xy => [0, 1],
-        Plane::Zx => [0, 2],
-        Plane::Yz => [1, 2],
+        Plane::Xy => &[0, 1],
+        Plane::Zx => &[0, 2],
+        Plane::Yz => &[1, 2],
     }
 }

@@ -7,12 +7,12 @@ use crate::claims::Claims;
 use crate::codes::Code;
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::interpreter::Interpreter;
+use crate::offsets::{about, linear};
 use crate::program::{ArcForm, ArcWay, Plane};
+use nalgebra::Vector3;
 use shared::geometry::Turn;
 use shared::io::AXES;
 
-/// Coordinates nearer than this are one \[mm\].
-const SAME: f64 = 1e-6;
 /// Three points are on a line where the sine of their angle is less.
 const STRAIGHT: f64 = 1e-9;
 
@@ -90,35 +90,34 @@ impl Interpreter {
             point[axis] = word.value * self.modal.unit() + if steps { now[axis] } else { 0.0 };
         }
         let end: [f64; 3] = std::array::from_fn(|axis| said[axis].unwrap_or(now[axis]));
-        let flat = |plane: &Plane| {
-            let axis = plane.axis();
-            (point[axis] - now[axis]).abs() < SAME && (end[axis] - now[axis]).abs() < SAME
+        let at = |place: [f64; 3]| {
+            let mut all = now;
+            all[..3].copy_from_slice(&place);
+            Vector3::from(linear(&self.offsets.to_tip(&all)))
         };
-        let planes = [self.modal.plane, Plane::Xy, Plane::Zx, Plane::Yz];
-        let plane = planes.into_iter().find(flat);
-        let plane = plane.ok_or_else(|| wrong("arcs lie in the plane X Y, Z X or Y Z: this one does not"))?;
-        let [a, b] = plane.axes();
-        // Seen from the start.
-        let p = [point[a] - now[a], point[b] - now[b]];
-        let e = [end[a] - now[a], end[b] - now[b]];
-        let cross = p[0] * e[1] - p[1] * e[0];
-        let (pp, ee) = (p[0] * p[0] + p[1] * p[1], e[0] * e[0] + e[1] * e[1]);
-        if cross.abs() <= STRAIGHT * (pp * ee).sqrt() {
+        // Seen from the start, in coordinates of the tip.
+        let [p, e] = [point, end].map(|place| at(place) - at(linear(&now)));
+        let normal = p.cross(&e);
+        if normal.norm() <= STRAIGHT * p.norm() * e.norm() {
             return Err(wrong("its three points are on a straight line: write G1"));
         }
-        let mut offset = [0.0; 3];
-        offset[a] = (e[1] * pp - p[1] * ee) / (2.0 * cross);
-        offset[b] = (p[0] * ee - e[0] * pp) / (2.0 * cross);
-        [offset[0], offset[1]] = self.offsets.direction([offset[0], offset[1]]);
-        let turn = match cross > 0.0 {
-            true => Turn::CounterClockwise,
-            false => Turn::Clockwise,
-        };
-        let (_, turn) = self.framed_arc(plane, turn, place)?;
+        if self.offsets.frame.reshapes() {
+            let along = normal.iamax();
+            let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
+            let plane = planes.into_iter().find(|plane| plane.axis() == along);
+            let arcs = plane.and_then(|plane| self.offsets.arcs(plane));
+            arcs.ok_or(Problem::StretchedArc.at(place))?;
+        }
+        let across = e * p.norm_squared() - p * e.norm_squared();
+        let to_centre = across.cross(&normal) / (2.0 * normal.norm_squared());
+        let (about, mirrored) = about(normal);
         Ok(ArcWay {
-            plane,
-            turn,
-            form: ArcForm::Centre(offset),
+            about,
+            turn: match mirrored {
+                true => Turn::Clockwise,
+                false => Turn::CounterClockwise,
+            },
+            form: ArcForm::Centre(to_centre.into()),
             more_turns: 0,
         })
     }

@@ -190,7 +190,7 @@ impl Interpreter {
         let through = match arc {
             None => Way::Line,
             Some((centre, turn)) => Way::Arc(ArcWay {
-                plane,
+                about: plane.normal(),
                 turn,
                 form: ArcForm::Centre(in_plane(plane, centre - from)),
                 more_turns: 0,
@@ -270,7 +270,7 @@ impl Interpreter {
         }
         let left = Vector2::new(-heading.y, heading.x);
         Ok(Way::Arc(ArcWay {
-            plane,
+            about: plane.normal(),
             turn: if aside > 0.0 {
                 Turn::CounterClockwise
             } else {

@@ -291,9 +291,6 @@ impl Interpreter {
         if self.modal.inverse_time() {
             return Err(impossible("a drilling cycle has no time: write G94"));
         }
-        if self.offsets.turned() && axis != 2 {
-            return Err(Problem::TiltedArc.at(place));
-        }
         self.check_reshaped(&Block::default(), true, place)?;
         let unit = self.modal.unit();
         if drilling.feeds.is_none() {

@@ -1,12 +1,11 @@
-//! TRANS, ROT, MIRROR, SCALE and those with A before them: the frame inside the coordinate system that holds.
+//! TRANS, ROT, MIRROR, SCALE and those with A before them: the frame inside the coordinate system that holds, or inside a tilted plane.
 
 use crate::block::Block;
 use crate::claims::Claims;
 use crate::codes::{Code, Group};
 use crate::error::{NcError, Problem, SourcePosition};
-use crate::frame::Frame;
 use crate::interpreter::Interpreter;
-use crate::program::{AXIS_WORDS, Plane};
+use crate::program::AXIS_WORDS;
 
 /// Words of the rotary axes, and of directions of the tool.
 const OF_THE_TOOL: [&str; 6] = ["A", "B", "C", "A3", "B3", "C3"];
@@ -26,7 +25,7 @@ impl Interpreter {
             return Ok(());
         };
         let mut frame = match code {
-            Code::Shift | Code::Turn | Code::Mirror | Code::Scale => Frame::default(),
+            Code::Shift | Code::Turn | Code::Mirror | Code::Scale => self.offsets.base(),
             _ => self.offsets.frame,
         };
         match code {
@@ -37,7 +36,11 @@ impl Interpreter {
                 }
                 frame.shift(&by);
             }
-            Code::Turn | Code::MoreTurn => frame.turn(self.rotation(block, claims, (code, name), place)?),
+            Code::Turn | Code::MoreTurn => {
+                for (axis, degrees) in self.rotations(block, claims, (code, name), place)? {
+                    frame.turn(axis, degrees);
+                }
+            }
             _ => {
                 if let Some(factors) = factors(block, matches!(code, Code::Mirror | Code::MoreMirror), name)?
                 {
@@ -49,31 +52,35 @@ impl Interpreter {
         self.check_weld_as_it_is(name, place)
     }
 
-    /// By how much ROT or AROT turns about Z \[deg\].
-    fn rotation(
+    /// The rotations of ROT or AROT, axes and degrees in the order of the controller: about Z, about Y as it is then, and about X.
+    fn rotations(
         &self,
         block: &Block,
         claims: &Claims,
         (code, name): (Code, &'static str),
         place: SourcePosition,
-    ) -> Result<f64, NcError> {
-        let impossible = |why| Problem::Impossible { code: name, why }.at(place);
-        let plane = claims.word(code, "RPL");
-        if plane.is_some() && self.modal.plane != Plane::Xy {
-            return Err(impossible("RPL= turns about Z only: select the plane with G17"));
+    ) -> Result<Vec<(usize, f64)>, NcError> {
+        let impossible = |why, place| Err(Problem::Impossible { code: name, why }.at(place));
+        let words = AXIS_WORDS.iter().enumerate();
+        let words = words.filter_map(|(axis, name)| block.word(name).map(|word| (axis, word)));
+        let words: Vec<_> = words.collect();
+        if let Some((_, word)) = words.iter().find(|(axis, _)| *axis > 2) {
+            return impossible("it turns about X, Y and Z, and not with rotary axes", word.place);
         }
-        let aside = AXIS_WORDS.iter().filter(|axis| **axis != "Z");
-        if aside
-            .filter_map(|axis| block.word(axis))
-            .any(|word| word.value != 0.0)
-        {
-            return Err(impossible("a tilted plane is not supported: rotate about Z"));
+        let in_plane = claims.word(code, "RPL");
+        if in_plane.is_some() && !words.is_empty() {
+            return impossible("it turns by RPL= or about axes, not both", place);
         }
-        let about_z = block.word("Z");
-        if plane.is_some() && about_z.is_some() {
-            return Err(impossible("it turns by RPL= or by Z, not both"));
-        }
-        Ok(plane.or(about_z).map_or(0.0, |word| word.value))
+        let in_plane = in_plane.map(|word| (self.modal.plane.axis(), word.value));
+        let about = words.into_iter().rev().map(|(axis, word)| (axis, word.value));
+        Ok(about.chain(in_plane).collect())
+    }
+
+    /// Where a corner is to be put in behind the motion of `block`, if it is.
+    pub(crate) fn corner_place(&self, block: &Block, place: SourcePosition) -> Option<SourcePosition> {
+        let word = CORNERS.iter().find_map(|name| block.word(name));
+        word.map(|word| word.place)
+            .or(self.corners.rounds().then_some(place))
     }
 
     /// What MIRROR and SCALE do not reach: the attitude of the tool, levels of cycles along Z, and corners.
@@ -100,13 +107,11 @@ impl Interpreter {
         if drills && !frame.keeps_z() {
             return impossible("cycles need Z as it is: mirror or scale X and Y alone", place);
         }
-        let corner = CORNERS.iter().find_map(|name| block.word(name));
-        let corner = corner.map(|word| word.place);
-        let corner = corner.or(self.corners.rounds().then_some(place));
-        let of_its_length = frame
-            .of_arcs()
-            .is_some_and(|(factor, _)| (factor - 1.0).abs() < 1e-12);
-        if let Some(place) = corner
+        let of_its_length = self
+            .offsets
+            .arcs(self.modal.plane)
+            .is_some_and(|arcs| (arcs.factor - 1.0).abs() < 1e-12);
+        if let Some(place) = self.corner_place(block, place)
             && !of_its_length
         {
             return impossible(

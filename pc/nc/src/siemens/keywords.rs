@@ -90,18 +90,16 @@ const KNOTS: &str =
     "its curve depends on knots that the controller chooses: write G1 with G64 P, or G6.2 with its knots";
 const CYCLE: &str = "this cycle is not supported: write its motions out, or let the CAM system do so";
 const TAPPING: &str = "threading and tapping need a spindle that the axes follow, and this machine has none";
-const FRAME: &str = "only TRANS, MIRROR, SCALE, ROT about Z and ATRANS, AMIRROR, ASCALE, AROT change the coordinates of a program";
+const FRAME: &str =
+    "only TRANS, MIRROR, SCALE, ROT and ATRANS, AMIRROR, ASCALE, AROT change the coordinates of a program";
 const SPINDLE: &str = "the spindle is not positioned by programs";
 const FILES: &str =
     "subprograms are called by their name alone in a line, and are in this program or beside it";
 const ACTIONS: &str = "synchronised actions are not supported: outputs are switched by M62 to M68";
-const TURNED: &str = "a tilted plane is not supported: rotate about Z with ROT";
-const RETRACTION: &str =
-    "its first argument asks for a retraction that is not known here: write 0, and a SUPA G0 before it";
 const LATHE: &str = "lathe codes are not supported";
 
 /// Words that are refused, and why.
-const REFUSED: [(&str, &str); 44] = [
+const REFUSED: [(&str, &str); 43] = [
     ("ASPLINE", SPLINE),
     ("CSPLINE", SPLINE),
     ("BSPLINE", KNOTS),
@@ -112,7 +110,6 @@ const REFUSED: [(&str, &str); 44] = [
     ("TOFRAME", FRAME),
     ("TOROT", FRAME),
     ("CRPL", FRAME),
-    ("CYCLE800", TURNED),
     ("CYCLE60", CYCLE),
     ("CYCLE61", CYCLE),
     ("CYCLE62", CYCLE),
@@ -185,7 +182,7 @@ pub(crate) fn refused_word(word: &str) -> Option<Problem> {
 
 /// Whether the cycle `name` changes nothing here; the scanner is behind it then.
 pub(super) fn cycle_without_effect(name: &str, scanner: &mut Scanner) -> Result<bool, NcError> {
-    let (place, start) = (scanner.place(), scanner.mark());
+    let start = scanner.mark();
     scanner.skip_blanks();
     if scanner.peek() == Some('(') {
         scanner.step();
@@ -194,15 +191,6 @@ pub(super) fn cycle_without_effect(name: &str, scanner: &mut Scanner) -> Result<
         let nothing = match name {
             // High speed is planned ahead anyway, within the tolerance of G64; the others are for displays.
             "CYCLE832" | "WORKPIECE" | "GROUP_BEGIN" | "GROUP_END" => true,
-            "CYCLE800" => {
-                let level = is_level(&within);
-                let retraction = within.split(',').next().unwrap_or_default();
-                if level && !is_zero(retraction.trim()) {
-                    let (code, why) = ("CYCLE800", RETRACTION);
-                    return Err(Problem::Impossible { code, why }.at(place));
-                }
-                level
-            }
             // F is that of the tip.
             "FGROUP" => within.split(',').all(|axis| "XYZ".contains(axis.trim())),
             _ => false,
@@ -213,15 +201,4 @@ pub(super) fn cycle_without_effect(name: &str, scanner: &mut Scanner) -> Result<
     }
     scanner.go_back(start);
     Ok(false)
-}
-
-/// Whether CYCLE800 with these arguments ends a tilted plane, or has one that is neither tilted nor moved: those from the fifth to the
-/// thirteenth are shifts and angles.
-fn is_level(arguments: &str) -> bool {
-    let mut arguments = arguments.split(',').map(str::trim).enumerate();
-    arguments.all(|(index, argument)| !matches!(index, 4..=12) || is_zero(argument))
-}
-
-fn is_zero(argument: &str) -> bool {
-    argument.is_empty() || argument.parse() == Ok(0.0)
 }

@@ -21,6 +21,7 @@ mod poles;
 mod repeats;
 mod statement;
 pub(super) mod structures;
+mod swivel;
 pub(super) mod variables;
 mod words;
 

@@ -8,6 +8,7 @@ use super::jumps::{self, Jump};
 use super::keywords;
 use super::macros::{self, MacroCall};
 use super::repeats::{self, Repeat};
+use super::swivel::{self, Swivel};
 use super::variables;
 use crate::error::{NcError, Problem, SourcePosition};
 use crate::parameters::{InBlock, Parameter, Variable};
@@ -61,6 +62,8 @@ pub(crate) enum What {
     DrillAfterMotions(Option<Drilling>),
     /// HOLES1 and HOLES2.
     DrillAll(Holes),
+    /// CYCLE800.
+    Swivel(Swivel),
 }
 
 /// The statement at the scanner, if there is one.
@@ -98,6 +101,7 @@ pub(super) fn read(scanner: &mut Scanner, lookup: &mut InBlock) -> Result<Option
             scanner.take(|c| c != ';');
             What::Nothing
         }
+        "CYCLE800" => What::Swivel(swivel::read(scanner, lookup)?),
         "MCALL" => What::DrillAfterMotions(drilling::modal(scanner, lookup)?),
         name if macros::end_of_loop(name).is_some() => {
             What::EndWhile(macros::end_of_loop(name).unwrap_or_default())
@@ -192,7 +196,11 @@ impl Reader {
         let place = statement.place;
         let branches = !matches!(
             statement.what,
-            What::Define(_) | What::Drill(_) | What::DrillAfterMotions(_) | What::DrillAll(_)
+            What::Define(_)
+                | What::Drill(_)
+                | What::DrillAfterMotions(_)
+                | What::DrillAll(_)
+                | What::Swivel(_)
         );
         self.interpreter.branches |= branches;
         match statement.what {
@@ -215,6 +223,7 @@ impl Reader {
             What::Return => self.end_subprogram("RET", place),
             What::Drill(drilling) => self.interpreter.drill(&drilling, place),
             What::DrillAll(holes) => self.interpreter.drill_all(&holes, place),
+            What::Swivel(swivel) => self.interpreter.swivel(&swivel, place),
             What::DrillAfterMotions(drilling) => {
                 self.interpreter.modal_drilling = drilling;
                 Ok(())

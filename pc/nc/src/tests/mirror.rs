@@ -107,7 +107,6 @@ fn what_controllers_do_not_allow_beside_these_is_refused() {
         ("G0 X1 Y1\nG68 X0 Y0 R5\nX1 Y1\nG69\nY3", "says X and Y"),
         ("G51.1 X0\nG0 X1 C5", "the tool does not"),
         ("G51.1 Z0\nF9 G81 X1 Y1 Z-1 R1", "cycles need Z as it is"),
-        ("G51.1 X0\nG18 F9 G2 X1 Z1 R5", "arcs in G18"),
         ("G51.1 X0\nWELDON=root", "do not follow"),
         ("F9 G81 X1 Y1 Z-1 R1\nA5", "only X, Y and Z are moved in a cycle"),
     ] {

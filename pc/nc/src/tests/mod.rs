@@ -18,6 +18,7 @@ mod reading;
 mod siemens;
 mod tape_marks;
 mod tapping;
+mod tilt;
 mod tool_length;
 mod waits;
 
@@ -111,7 +112,7 @@ fn arcs_have_a_centre_or_a_radius() {
     let ways: Vec<_> = path.targets.iter().map(|t| t.way.clone()).collect();
     let arc = |turn, form| {
         Way::Arc(ArcWay {
-            plane: Plane::Xy,
+            about: Plane::Xy.normal(),
             turn,
             form,
             more_turns: 0,

@@ -111,8 +111,8 @@ fn arcs_have_planes_and_turns() {
         targets(body).iter().map(arc).collect()
     };
     let seen = arcs("F600\nG18 G2 X10 Z5 I5 K2.5 P3\nG19\nG3 Y8 Z1 R-20\nG17 X50 I20\nM2");
-    let arc = |plane, turn, form, more_turns| ArcWay {
-        plane,
+    let arc = |plane: Plane, turn, form, more_turns| ArcWay {
+        about: plane.normal(),
         turn,
         form,
         more_turns,

@@ -4,7 +4,7 @@ use super::*;
 
 /// `text` on a shipped machine from its park position; the normal of the tool at its end, and where the axes stand there
 /// (mm, degrees).
-fn end(machine: &str, text: &str) -> Result<(Vector3<f64>, [f64; AXES]), String> {
+pub(super) fn end(machine: &str, text: &str) -> Result<(Vector3<f64>, [f64; AXES]), String> {
     let planner = planner_of(machine);
     let park = planner.planning.park_axes();
     let options = Options {
@@ -20,7 +20,7 @@ fn end(machine: &str, text: &str) -> Result<(Vector3<f64>, [f64; AXES]), String>
 }
 
 /// A start and an end for every machine, and a direction that it reaches there.
-const REACHED: [(&str, &str, &str, [f64; 3]); 5] = [
+pub(super) const REACHED: [(&str, &str, &str, [f64; 3]); 5] = [
     (
         "dual-beam-gantry",
         "X1000 Y1000 Z200 A0 B0 C20",

@@ -13,6 +13,7 @@ mod program_setup;
 mod rotary;
 mod short_blocks;
 mod smoothing;
+mod tilt;
 mod too_fast;
 mod waits;
 

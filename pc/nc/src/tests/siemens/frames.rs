@@ -22,8 +22,10 @@ fn frames_shift_and_turn_inside_the_coordinate_system() {
     assert_eq!(end("G10 L2 P1 X100 R90\nTRANS X10\nG0 X1 Y2"), [98.0, 11.0]);
     // The tip stays where it is: steps go on from there.
     assert_eq!(end("G0 X5 Y5\nTRANS X10 Y10\nG91 X1 Y1"), [6.0, 6.0]);
-    assert!(wrong("ROT X30").contains("a tilted plane"));
-    assert!(wrong("G18\nROT RPL=30").contains("select the plane with G17"));
+    // About Z to X is about Y.
+    assert_eq!(end("G18\nROT RPL=90\nG0 X1 Y2 Z3"), [3.0, 2.0]);
+    assert!(wrong("ROT A30").contains("not with rotary axes"));
+    assert!(wrong("ROT X30 RPL=2").contains("by RPL= or about axes"));
     assert!(wrong("TRANS X1\nG92 X0").contains("end them first by TRANS"));
 }
 
@@ -85,7 +87,9 @@ fn arcs_are_mirrored_with_their_sense_and_scaled_with_their_radius() {
         (Turn::Clockwise, ArcForm::Centre([10.0, 0.0, 0.0]))
     );
     assert!(wrong(&format!("SCALE X2\n{begin}\nG3 X0 Y10 R10")).contains("it is an ellipse"));
-    assert!(wrong(&format!("MIRROR X0\nG18\n{begin}\nG3 X0 Z10 CR=10")).contains("arcs in G18"));
+    assert!(wrong(&format!("SCALE X2\n{begin}\nCIP X-10 Y0 I1=0 J1=10")).contains("it is an ellipse"));
+    let about_y = arc(&format!("MIRROR X0\nG18\n{begin}\nG3 X0 Z10 CR=10"));
+    assert_eq!(about_y, (Turn::Clockwise, ArcForm::Radius(10.0)));
 }
 
 #[test]

@@ -68,15 +68,26 @@ fn an_arc_may_lead_through_a_point() {
     );
     let (way, _) = arc("CIP X20 Z0 I1=10 K1=10");
     assert_eq!(
-        (way.plane, way.form),
-        (crate::Plane::Zx, ArcForm::Centre([10.0, 0.0, 0.0]))
+        (way.plane(), way.form),
+        (Some(crate::Plane::Zx), ArcForm::Centre([10.0, 0.0, 0.0]))
     );
     // It holds on.
     assert_eq!(
         form("CIP X20 Y0 I1=10 J1=10\nX40 I1=30 J1=10"),
         ArcForm::Centre([10.0, 0.0, 0.0])
     );
-    assert!(wrong("F9\nCIP X20 Y0 Z5 I1=10 J1=10").contains("this one does not"));
+    // In space: all three points are 15 mm from X10 Y5 Z10, in the plane where Z is X.
+    let (way, _) = arc("CIP X20 Y0 Z20 I1=10 J1=-10 K1=10");
+    let ArcForm::Centre(centre) = way.form else {
+        panic!("a centre")
+    };
+    let near = |own: [f64; 3], expected: [f64; 3]| (0..3).all(|i| (own[i] - expected[i]).abs() < 1e-9);
+    let (half, counter) = (0.5f64.sqrt(), Turn::CounterClockwise);
+    assert!(near(centre, [10.0, 5.0, 10.0]), "{centre:?}");
+    assert!(
+        near(way.about, [-half, 0.0, half]) && way.turn == counter,
+        "{way:?}"
+    );
     assert!(wrong("F9\nCIP X20 Y0 I1=10").contains("on a straight line"));
     assert!(wrong("CIP X20 Y0 I1=10 J1=10").contains("CIP needs a feed"));
     assert!(wrong("F9\nCIP X20 Y0").contains("I1= J1= K1="));

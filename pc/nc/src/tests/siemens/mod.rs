@@ -225,10 +225,7 @@ fn words_without_effect_are_passed_over_and_others_refused_with_a_reason() {
             "its curve depends on knots that the controller chooses",
         ),
         ("SLOT1(9,0,2,-5)", "this cycle is not supported"),
-        (
-            "CYCLE800(1,\"\",0,57,0,0,0,30,0,0,0,0,0,1)",
-            "a tilted plane is not supported",
-        ),
+        ("CYCLE800(1,\"\",0,57,0,0,0,30,0,0,0,0,0,1)", "a retraction"),
         ("FGROUP(X,Y,A)", "F is the speed of the tip"),
         ("ROTS X30", "only TRANS, MIRROR, SCALE"),
         ("G510", "coordinate systems are G54 to G57 and G505 to G509"),
