@@ -3,6 +3,7 @@
 use crate::arc::{self, Arc};
 use crate::list::{Item, Kind, List, Motion, Place, straight, turned, turns_only};
 use crate::peer::{self, TOOLS};
+use nalgebra::{Matrix3, Vector3};
 use nc::{
     ArcForm, ArcWay, FeedRate, Move, NcError, Options, ProbeInput, Program, ProgramAction, ProgramEvent,
     Setup, Target, TipAndAxes, Tool, Until, Way,
@@ -159,13 +160,12 @@ fn motion(from: &Place, target: &Target) -> Motion {
         Way::Axes => (Kind::Rapid, Some(straight(from, &to)), None),
         Way::Line if target.feed.is_none() => (Kind::Rapid, Some(straight(from, &to)), None),
         Way::Line => (Kind::Line, Some(straight(from, &to)), None),
-        Way::Arc(way) if let Some(plane) = way.plane() => {
-            let (length, middle, of_its_radius) = arc(way, plane.axis(), xyz(from), xyz(&to));
+        Way::Arc(way) => {
+            let (length, middle, of_its_radius) = arc(way, xyz(from), xyz(&to));
             of_time = Some(of_its_radius);
             (Kind::Arc, Some(length), Some(middle))
         }
-        // The peer has no arcs in other planes.
-        Way::Arc(_) | Way::Nurbs(_) => (Kind::Curve, None, None),
+        Way::Nurbs(_) => (Kind::Curve, None, None),
     };
     let feed = target.feed.and_then(|feed| match feed {
         FeedRate::PerMinute(rate) => Some(rate),
@@ -184,22 +184,31 @@ fn motion(from: &Place, target: &Target) -> Motion {
     }
 }
 
-/// Length of an arc about the axis of this index, the place halfway, and the length with the radius at its start, by which the peer turns a time into a
+/// Length of an arc, the place halfway, and the length with the radius at its start, by which the peer turns a time into a
 /// feed.
-fn arc(way: &ArcWay, axis: usize, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3], f64) {
-    let turn = way.turn;
+fn arc(way: &ArcWay, from: [f64; 3], to: [f64; 3]) -> (f64, [f64; 3], f64) {
+    // In coordinates whose Z is the axis that it goes about.
+    let about = Vector3::from(way.about);
+    let aside = Vector3::ith(about.iamin(), 1.0).cross(&about).normalize();
+    let axes = Matrix3::from_columns(&[aside, about.cross(&aside), about]);
+    let [start, end] = [from, to].map(|place| (axes.transpose() * Vector3::from(place)).into());
     let centre = match way.form {
-        ArcForm::Centre(offset) => std::array::from_fn(|axis| from[axis] + offset[axis]),
-        ArcForm::Radius(radius) => arc::centre(axis, turn, radius, from, to),
+        ArcForm::Centre(offset) => {
+            let [x, y, z] = (axes.transpose() * Vector3::from(offset)).into();
+            let [u, v, w]: [f64; 3] = start;
+            [u + x, v + y, w + z]
+        }
+        ArcForm::Radius(radius) => arc::centre(2, way.turn, radius, start, end),
     };
     let arc = Arc {
-        axis,
+        axis: 2,
         centre,
-        turn,
+        turn: way.turn,
         more_turns: way.more_turns,
     };
-    let (length, middle) = arc.measure(from, to);
-    (length, middle, arc.length_by_first_radius(from, to))
+    let (length, middle) = arc.measure(start, end);
+    let middle = axes * Vector3::from(middle);
+    (length, middle.into(), arc.length_by_first_radius(start, end))
 }
 
 fn xyz(place: &Place) -> [f64; 3] {
