@@ -74,6 +74,26 @@ pub struct Loop {
     pub held: Option<ParameterError>,
 }
 
+impl Loop {
+    /// What the loop leaves of a disturbance of the position at a line of a capture, by its number and the response there, which was
+    /// measured with the parameters `before`.
+    ///
+    /// # Errors
+    /// A parameter of a filter is out of range.
+    pub(crate) fn sensitivity(
+        &self,
+        before: &MotorConfig,
+    ) -> Result<impl Fn(usize, Complex) -> Complex, ParameterError> {
+        let filters = filters(&self.motor)?;
+        // The response is that to commands as the machine file has them.
+        let gain = self.motor.velocity_at_10v / before.velocity_at_10v;
+        Ok(move |number, response: Complex| {
+            let hz = number as f64 * Chirp::LINE_HZ;
+            1.0 / (1.0 + pid(&self.motor, hz) * filters[number] * response / gain)
+        })
+    }
+}
+
 /// Why no loop was designed.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum NoDesign {

@@ -79,9 +79,8 @@ impl Found {
             .map_err(Clone::clone)
             .map(|response| design(response, MOTOR_NAMES[index], motor, &requirements));
         let found = designed.as_ref().ok().and_then(|designed| designed.as_ref().ok());
-        let delay_s = found.map_or(0.0, |found| found.lag.delay_s);
         let friction = match &response {
-            Ok(response) => friction(response, turning, motor, delay_s),
+            Ok(response) => friction(response, turning, motor, found),
             Err(_) => Err(NoFriction::NoResponse),
         };
         let resting = captures.iter().find(|capture| capture.way == 0.0);

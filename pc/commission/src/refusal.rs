@@ -1,6 +1,5 @@
 //! Why a motor is not commissioned, by what was measured of it.
 
-use crate::controller::{filters, pid};
 use crate::design::{Loop, least_gain};
 use crate::friction::{left, over_time};
 use crate::plan::{COUNTS_AT_REST, TURNS_HZ};
@@ -190,15 +189,12 @@ impl Measured<'_> {
         if self.turning.len() != CAPTURE_TICKS {
             return Ok(0.0);
         }
-        // The response is that to commands as the machine file has them.
-        let gain = designed.motor.velocity_at_10v / self.motor.velocity_at_10v;
-        let filters = filters(&designed.motor)?;
+        let sensitivity = designed.sensitivity(self.motor)?;
         let left = left(response, self.turning, self.motor, self.friction)?;
         let closed = left.iter().filter_map(|(number, left)| {
             let hz = *number as f64 * Chirp::LINE_HZ;
             let line = response.lines.iter().find(|line| line.hz == hz)?;
-            let open = pid(&designed.motor, hz) * filters[*number] * line.gain / gain;
-            Some((*number, left / (1.0 + open)))
+            Some((*number, left * sensitivity(*number, line.gain)))
         });
         Ok(over_time(closed)
             .into_iter()

@@ -523,7 +523,7 @@ fn friction_is_found_and_reversals_cost_less() {
             let (response, designed) = found(index, &config, &motor);
             for amplitude in [1.0, 0.15] {
                 let samples = turning(index, &config, &motor, amplitude);
-                let found = friction(&response, &samples, &motor, designed.lag.delay_s)
+                let found = friction(&response, &samples, &motor, Some(&designed))
                     .unwrap_or_else(|error| panic!("{draw} {}: {error}", MOTOR_NAMES[index]));
                 let mut with = designed.motor.clone();
                 with.friction = Some(found);
@@ -547,7 +547,7 @@ fn where_there_is_no_friction_none_is_found() {
     config.mechanics.backlash = 0.0;
     let (response, designed) = found(Y, &config, &motor);
     let samples = turning(Y, &config, &motor, 1.0);
-    let found = |samples: &[CaptureSample]| friction(&response, samples, &motor, designed.lag.delay_s);
+    let found = |samples: &[CaptureSample]| friction(&response, samples, &motor, Some(&designed));
     let none = found(&samples);
     assert!(matches!(none, Err(NoFriction::Unlike { .. })), "{none:?}");
     assert_eq!(found(&samples[..CAPTURE_TICKS / 2]), Err(NoFriction::Empty));
@@ -565,7 +565,7 @@ fn refusal(index: usize, config: &TrueMotor, motor: &MotorConfig, amplitude: f64
     let turning = turning(index, config, motor, amplitude);
     let found = response.as_ref().zip(designed.as_ref());
     let friction =
-        found.and_then(|(response, designed)| friction(response, &turning, motor, designed.lag.delay_s).ok());
+        found.and_then(|(response, designed)| friction(response, &turning, motor, Some(designed)).ok());
     let (swing, rest) = (
         swing(WAY, acceleration, f64::INFINITY),
         plan_at_rest(motor.counts_per_unit, acceleration)[0],

@@ -51,7 +51,7 @@ fn is_arc(wanted: &Way, found: &nc::Way, near: Near) -> bool {
         return false;
     };
     let same_centre = (0..3).all(|i| near.values(found[i], centre[i]));
-    same_centre && (arc.plane, arc.turn, arc.more_turns) == (*plane, *turn, 0)
+    same_centre && (arc.plane(), arc.turn, arc.more_turns) == (Some(*plane), *turn, 0)
 }
 
 /// Within so much of each other (mm, degrees).
