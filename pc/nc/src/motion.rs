@@ -302,7 +302,7 @@ impl Interpreter {
             true => Ok(()),
             false => {
                 let (code, why) = (
-                    "a tilted plane",
+                    "a tilted or rotated plane",
                     "G41, G42, roundings, chamfers and CT do not lie in it: write their motions out, or turn about the axis of G17, G18 or G19 only",
                 );
                 Err(Problem::Impossible { code, why }.at(place))

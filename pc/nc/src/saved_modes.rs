@@ -7,6 +7,7 @@ use super::frame::Frame;
 use super::interpreter::Interpreter;
 use super::modal::Modal;
 use super::outputs::Spindle;
+use super::tilt::Tilt;
 
 /// Modes of one moment.
 #[derive(Clone, Debug)]
@@ -27,14 +28,14 @@ enum By {
     Program,
     /// M73: where the subroutine ends, and at M72.
     Subroutine,
-    /// SAVE behind PROC: where the subprogram ends, with the frame.
-    Header(Frame),
+    /// SAVE behind PROC: where the subprogram ends, with the frame and the tilted plane.
+    Header(Frame, Option<Tilt>),
 }
 
 impl Interpreter {
     /// SAVE: G codes and frame come back where the subprogram ends, which begins here.
     pub(super) fn save_codes(&mut self, place: SourcePosition) {
-        self.save(By::Header(self.offsets.frame), place);
+        self.save(By::Header(self.offsets.frame, self.offsets.tilt), place);
     }
 
     fn save(&mut self, by: By, place: SourcePosition) {
@@ -54,7 +55,7 @@ impl Interpreter {
             return Ok(());
         };
         let (depth, place) = (self.parameters.depth(), code.place);
-        let of_codes = |saved: &Saved| saved.depth == depth && !matches!(saved.by, By::Header(_));
+        let of_codes = |saved: &Saved| saved.depth == depth && !matches!(saved.by, By::Header(..));
         let own = self.saved.iter().position(of_codes);
         match code.code {
             Code::RestoreModes => {
@@ -92,11 +93,11 @@ impl Interpreter {
                     let place = saved.place;
                     self.restore(saved, place)?;
                 }
-                By::Header(frame) => {
+                By::Header(frame, tilt) => {
                     self.check_off("SAVE", saved.place)?;
                     self.modal.restore_codes(saved.modal);
                     self.offsets.active = saved.system;
-                    self.offsets.frame = frame;
+                    (self.offsets.frame, self.offsets.tilt) = (frame, tilt);
                     self.spline_end = None;
                 }
             }

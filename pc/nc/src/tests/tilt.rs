@@ -227,6 +227,12 @@ fn cycle800_makes_planes_by_its_mode() {
     );
     near(&format!("{plane}CYCLE800()"), own);
     near(&format!("{plane}CYCLE800(0,\"0\",0,57,0,0,0,0,0,0)"), own);
+    // SAVE brings back the plane of before, and what TRANS goes back to.
+    let saved = format!(
+        "{plane}SUB1\nTRANS\nG0 X1 Y2 Z3\nM30\nPROC SUB1 SAVE\nCYCLE800(0,\"\",0,57,0,0,0,0,0,90)\nM17"
+    );
+    let to = ends(&saved);
+    assert!((to[0] - about(0, 90.0) * own).norm() < 1e-9, "{}", to[0]);
     // An inch.
     near(
         "G20\nCYCLE800(0,\"\",0,57,1,0,0,0,0,0)\nG21",
