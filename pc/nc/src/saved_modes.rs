@@ -17,6 +17,8 @@ pub(super) struct Saved {
     by: By,
     modal: Modal,
     system: usize,
+    frame: Frame,
+    tilt: Option<Tilt>,
     spindle: Spindle,
     place: SourcePosition,
 }
@@ -29,13 +31,13 @@ enum By {
     /// M73: where the subroutine ends, and at M72.
     Subroutine,
     /// SAVE behind PROC: where the subprogram ends, with the frame and the tilted plane.
-    Header(Frame, Option<Tilt>),
+    Header,
 }
 
 impl Interpreter {
     /// SAVE: G codes and frame come back where the subprogram ends, which begins here.
     pub(super) fn save_codes(&mut self, place: SourcePosition) {
-        self.save(By::Header(self.offsets.frame, self.offsets.tilt), place);
+        self.save(By::Header, place);
     }
 
     fn save(&mut self, by: By, place: SourcePosition) {
@@ -44,6 +46,8 @@ impl Interpreter {
             by,
             modal: self.modal.clone(),
             system: self.offsets.active,
+            frame: self.offsets.frame,
+            tilt: self.offsets.tilt,
             spindle: self.spindle.clone(),
             place,
         });
@@ -55,7 +59,7 @@ impl Interpreter {
             return Ok(());
         };
         let (depth, place) = (self.parameters.depth(), code.place);
-        let of_codes = |saved: &Saved| saved.depth == depth && !matches!(saved.by, By::Header(..));
+        let of_codes = |saved: &Saved| saved.depth == depth && saved.by != By::Header;
         let own = self.saved.iter().position(of_codes);
         match code.code {
             Code::RestoreModes => {
@@ -93,11 +97,11 @@ impl Interpreter {
                     let place = saved.place;
                     self.restore(saved, place)?;
                 }
-                By::Header(frame, tilt) => {
+                By::Header => {
                     self.check_off("SAVE", saved.place)?;
                     self.modal.restore_codes(saved.modal);
                     self.offsets.active = saved.system;
-                    (self.offsets.frame, self.offsets.tilt) = (frame, tilt);
+                    (self.offsets.frame, self.offsets.tilt) = (saved.frame, saved.tilt);
                     self.spline_end = None;
                 }
             }

@@ -96,6 +96,14 @@ fn call(
 
 /// Values between brackets and commas, with the scanner at the bracket.
 pub(super) fn arguments(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Vec<Option<f64>>, NcError> {
+    arguments_by(scanner, |scanner, _| expression::value(scanner, lookup))
+}
+
+/// The same, each read by `value` with its index.
+pub(super) fn arguments_by(
+    scanner: &mut Scanner,
+    mut value: impl FnMut(&mut Scanner, usize) -> Result<f64, NcError>,
+) -> Result<Vec<Option<f64>>, NcError> {
     let place = scanner.place();
     scanner.step();
     let mut values = Vec::new();
@@ -103,7 +111,7 @@ pub(super) fn arguments(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Resul
         scanner.skip_blanks();
         let value = match scanner.peek() {
             Some(',' | ')') => None,
-            _ => Some(expression::value(scanner, lookup)?),
+            _ => Some(value(scanner, values.len())?),
         };
         scanner.skip_blanks();
         let end = scanner.peek();

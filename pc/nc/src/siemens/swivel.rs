@@ -1,5 +1,6 @@
 //! CYCLE800: a tilted plane, and the tool that is turned to it.
 
+use super::calls::arguments_by;
 use super::expression;
 use crate::codes::Code;
 use crate::error::{NcError, Problem, SourcePosition};
@@ -46,9 +47,19 @@ pub(super) fn read(scanner: &mut Scanner, lookup: &mut dyn Lookup) -> Result<Swi
     let place = scanner.place();
     let wrong = |why| Err(Problem::Impossible { code: NAME, why }.at(place));
     scanner.skip_blanks();
-    let (data, given) = match scanner.peek() {
-        Some('(') => arguments(scanner, lookup)?,
-        _ => (None, Vec::new()),
+    let mut data = None;
+    let argument = |scanner: &mut Scanner, index| match scanner.peek() {
+        Some('"') if index == DATA => {
+            scanner.step();
+            data = Some(scanner.take(|c| c != '"').to_owned());
+            scanner.step();
+            Ok(0.0)
+        }
+        _ => expression::value(scanner, lookup),
+    };
+    let given = match scanner.peek() {
+        Some('(') => arguments_by(scanner, argument)?,
+        _ => Vec::new(),
     };
     let get = |index: usize| given.get(index).copied().flatten().unwrap_or(0.0);
     let three = |first: usize| [get(first), get(first + 1), get(first + 2)];
@@ -109,42 +120,6 @@ fn turns(mode: f64, angles: [f64; 3]) -> Option<Vec<(usize, f64)>> {
         }
         64..128 if c == 0.0 => Some(vec![(2, a), (1, b)]),
         _ => None,
-    }
-}
-
-/// The name of the swivel data, and the numbers at the places of all arguments.
-fn arguments(
-    scanner: &mut Scanner,
-    lookup: &mut dyn Lookup,
-) -> Result<(Option<String>, Vec<Option<f64>>), NcError> {
-    let place = scanner.place();
-    scanner.step();
-    let (mut data, mut values) = (None, Vec::new());
-    loop {
-        scanner.skip_blanks();
-        let value = match scanner.peek() {
-            Some(',' | ')') => None,
-            Some('"') if values.len() == DATA => {
-                scanner.step();
-                data = Some(scanner.take(|c| c != '"').to_owned());
-                scanner.step();
-                None
-            }
-            _ => Some(expression::value(scanner, lookup)?),
-        };
-        scanner.skip_blanks();
-        let end = scanner.peek();
-        if value.is_some() || end == Some(',') || !values.is_empty() {
-            values.push(value);
-        }
-        match end {
-            Some(',') => scanner.step(),
-            Some(')') => {
-                scanner.step();
-                return Ok((data, values));
-            }
-            _ => return Err(Problem::OpenBracket.at(place)),
-        }
     }
 }
 
