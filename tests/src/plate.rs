@@ -144,15 +144,20 @@ impl OverPlate {
         }
     }
 
+    /// Where X, Y and Z truly stood beside the corner of the plate before they were parked, which takes two paths \[mm\].
+    pub fn beside_corner(&self) -> [f64; 3] {
+        let stood = self.stood[self.stood.len() - 3];
+        std::array::from_fn(|axis| stood[LINEAR[axis]] - CORNER[axis])
+    }
+
     /// Checks that [`MEASURE`] has found the plate, touching it at the feeds that it says.
     #[track_caller]
     pub fn assert_found(&self) {
         assert!(self.ended.error.is_none(), "{:?}", self.ended.error);
         let touches = self.speeds.iter().filter(|speed| (4.9..10.1).contains(*speed));
         assert_eq!(touches.count(), 3, "{:?}", self.speeds);
-        // Parking takes two paths.
-        let stood = LINEAR.map(|motor| self.stood[self.stood.len() - 3][motor]);
-        let off: [f64; 3] = std::array::from_fn(|axis| stood[axis] - CORNER[axis] - BESIDE[axis]);
+        let beside = self.beside_corner();
+        let off: [f64; 3] = std::array::from_fn(|axis| beside[axis] - BESIDE[axis]);
         println!("{:.1?} um beside", off.map(|off| 1e3 * off));
         assert!(off.iter().all(|off| off.abs() < NEAR), "{off:?} mm");
         let touched = |text: &&String| text.contains("touched with the tip at");

@@ -1,6 +1,7 @@
 //! Programs that touch the work, and go on with what they have found.
 
 use super::*;
+use nalgebra::Vector3;
 use plant_file::PlantFile;
 use system_tests::plate::{self, CORNER, LINEAR, MEASURE, OverPlate};
 
@@ -23,6 +24,26 @@ fn a_plate_is_found_by_touching_it_wherever_it_truly_is() {
         // The operator has the feeds of welds replaced; a probe keeps its own.
         OverPlate::run(&mut over_a_plate(marks_off), MEASURE, Some(4.0)).assert_found();
     }
+}
+
+/// The plane leans by 1 in 10 to X, and begins 40 mm above the corner of the plate.
+#[test]
+fn a_tilted_plane_is_made_of_what_was_touched_and_the_tool_stands_on_it() {
+    let (touches, _) = MEASURE.split_once("G10").unwrap();
+    let text = format!(
+        "{touches}G0 Z[#<top> + 60]\nG68.2 P2 Q1 X#<left> Y#<front> Z[#<top> + 40]\n\
+         G68.2 P2 Q2 X[#<left> + 100] Y#<front> Z[#<top> + 30]\nG68.2 P2 Q3 X#<left> Y[#<front> + 100] Z[#<top> + 40]\n\
+         G53.6\nG0 X100 Y50 Z20\nG1 Z10 F1000\nG2 I20\nG4 P0.2\nM2\n"
+    );
+    let run = run_over_a_plate(&text);
+    assert!(run.ended.error.is_none(), "{:?}", run.ended.error);
+    let x = Vector3::new(10.0, 0.0, -1.0).normalize();
+    let z = x.cross(&Vector3::y());
+    // The axes of the head cross 180 mm from the tip along the tool, and X Y Z of the corner are of a tool that stands upright.
+    let tip = Vector3::z() * 40.0 + x * 100.0 + Vector3::y() * 50.0 + z * 10.0;
+    let expected = tip + (z - Vector3::z()) * 180.0;
+    let off = (Vector3::from(run.beside_corner()) - expected).norm();
+    assert!(off < 0.01, "{off} mm off");
 }
 
 /// The words of the motion down to the plate, of which the top is at -98.23.
