@@ -4,7 +4,7 @@
 //! ```text
 //! Planned → excitation, captures → Response (gain and coherence at lines) → Lag (gain and delay of the drive)
 //!                                                   → design: controller × response → Margins → Loop → machine file
-//! capture in which the motor turns round, Response → friction → Loop
+//! capture in which the motor turns round, Response, Loop → friction → machine file
 //! all of that → Refusal: what has to be seen to first; a job that tripped → Stopped
 //! ```
 //! [`excitations`] has what a motor of a machine is told, [`Found`] all of this for what was captured then.

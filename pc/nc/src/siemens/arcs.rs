@@ -102,11 +102,15 @@ impl Interpreter {
             return Err(wrong("its three points are on a straight line: write G1"));
         }
         if self.offsets.frame.reshapes() {
-            let along = normal.iamax();
+            let [p, e] = [point, end].map(|place| Vector3::from(place) - Vector3::from(linear(&now)));
+            let (programmed, _) = about(p.cross(&e));
             let planes = [Plane::Xy, Plane::Zx, Plane::Yz];
-            let plane = planes.into_iter().find(|plane| plane.axis() == along);
-            let arcs = plane.and_then(|plane| self.offsets.arcs(plane));
-            arcs.ok_or(Problem::StretchedArc.at(place))?;
+            let own = planes.iter().position(|plane| plane.normal() == programmed);
+            // In space it stays an arc only where all planes have them.
+            let concerned = own.map_or(&planes[..], |index| &planes[index..=index]);
+            if concerned.iter().any(|plane| self.offsets.arcs(*plane).is_none()) {
+                return Err(Problem::StretchedArc.at(place));
+            }
         }
         let across = e * p.norm_squared() - p * e.norm_squared();
         let to_centre = across.cross(&normal) / (2.0 * normal.norm_squared());

@@ -88,6 +88,12 @@ fn arcs_are_mirrored_with_their_sense_and_scaled_with_their_radius() {
     );
     assert!(wrong(&format!("SCALE X2\n{begin}\nG3 X0 Y10 R10")).contains("it is an ellipse"));
     assert!(wrong(&format!("SCALE X2\n{begin}\nCIP X-10 Y0 I1=0 J1=10")).contains("it is an ellipse"));
+    let in_space = "CIP X-10 Y0 Z20 I1=0 J1=10 K1=10";
+    assert!(wrong(&format!("SCALE X2 Y2\n{begin}\n{in_space}")).contains("it is an ellipse"));
+    assert_eq!(
+        arc(&format!("SCALE X2 Y2 Z2\n{begin}\n{in_space}")).1,
+        ArcForm::Centre([-20.0, -10.0, 20.0])
+    );
     let about_y = arc(&format!("MIRROR X0\nG18\n{begin}\nG3 X0 Z10 CR=10"));
     assert_eq!(about_y, (Turn::Clockwise, ArcForm::Radius(10.0)));
 }
