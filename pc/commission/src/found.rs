@@ -118,6 +118,15 @@ impl Found {
     }
 }
 
+/// Those of `motors` that swung by themselves while they were captured: in slower loops they may not.
+pub fn swinging(machine: &MotionConfig, motors: &[usize], captured: &[CapturedMotion]) -> Vec<usize> {
+    let swings = |index: &&usize| {
+        let found = Found::of(machine, machine.motors[**index].as_ref(), **index, captured);
+        matches!(found, Err(NotFound::Refused(Refusal::Swings { .. })))
+    };
+    motors.iter().filter(swings).copied().collect()
+}
+
 /// The response of the motor with this `index`, whether or not it is believed: all lines that were excited on its way.
 ///
 /// # Errors

@@ -31,7 +31,7 @@ pub use bode::Bode;
 pub use circle::{REVERSALS_DEG, Turn, TurnFigures, bidirectional_mm};
 pub use design::{Loop, NoDesign, Requirements, design};
 pub use excitations::{CapturedMotion, excitations, softened};
-pub use found::{Found, NotFound, measured};
+pub use found::{Found, NotFound, measured, swinging};
 pub use friction::{NoFriction, friction};
 pub use lag::Lag;
 pub use machine_file::{WriteError, rewrite, rewrite_all, rewrite_deviation};

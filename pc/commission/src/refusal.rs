@@ -66,6 +66,15 @@ pub enum Refusal {
         /// Highest proportional gain with the margins \[1/s\]; 0 if there is none.
         kp: f64,
     },
+    /// It swings by itself in the loop that it was measured in, so its response is not known.
+    #[error(
+        "resonance: what it moves swings at {hz:.1} Hz by itself, also in slow loops, so nothing can be measured: stiffen or lighten it, \
+         or look for what is loose"
+    )]
+    Swings {
+        /// Where \[Hz\].
+        hz: f64,
+    },
     /// Its drive follows slowly or late.
     #[error(
         "slow drive: it follows commands so late that a kp of {kp:.1} 1/s is the highest (at least {LEAST_KP:.1} 1/s): raise the gains \
@@ -106,15 +115,16 @@ impl Measured<'_> {
     pub fn refusal(&self) -> Result<Option<Refusal>, ParameterError> {
         let acceleration = self.reached().filter(|part| *part < REACHED);
         let acceleration = acceleration.map(|part| Refusal::Acceleration { part });
-        let kp = self.designed.map_or(0.0, |designed| designed.motor.kp);
-        let swings = self.swings_at().map(|hz| Refusal::Resonance { hz, kp });
         let Some(response) = self.response else {
+            let swings = self.swings_at().map(|hz| Refusal::Swings { hz });
             return Ok(swings.or(acceleration));
         };
         if acceleration.is_some() {
             return Ok(acceleration);
         }
+        let kp = self.designed.map_or(0.0, |designed| designed.motor.kp);
         if kp < LEAST_KP {
+            let swings = self.swings_at().map(|hz| Refusal::Resonance { hz, kp });
             let limits = least_gain(response, self.motor, LEAST_KP)?;
             let limits = limits.map_or(Refusal::SlowDrive { kp }, |hz| Refusal::Resonance { hz, kp });
             return Ok(Some(swings.unwrap_or(limits)));

@@ -70,6 +70,22 @@ fn every_motor_of_the_other_shipped_machines_is_commissioned() {
 }
 
 #[test]
+fn a_motor_that_swings_while_it_is_measured_is_measured_again_in_slower_loops() {
+    let folder = tempdir().expect("a folder");
+    let output = folder.path().join("machine.toml");
+    let into = output.to_str().expect("a path");
+    let told = commission(
+        &shipped("machines/stir-gantry.toml"),
+        &["--plant", "draw:usual:1225", "--motors", "X1", "-o", into],
+    );
+    let said = String::from_utf8_lossy(&told.stdout);
+    assert_eq!(told.status.code(), Some(0), "{said}");
+    assert!(said.contains("measured again, in slower loops: X1\n"), "{said}");
+    let after = std::fs::read_to_string(&output).expect("it is there");
+    assert!(after.contains("# commissioned; was 332.6"), "{after}");
+}
+
+#[test]
 fn a_machine_whose_loops_swing_welds_when_it_is_commissioned() {
     let folder = tempdir().expect("a folder");
     let machine = folder.path().join("machine.toml");

@@ -3,15 +3,17 @@
 use super::{Machine, Outcome, Place, bare, connect, next_folder};
 use crate::commissioning::keep;
 use anyhow::Context;
-use commission::{excitations, softened};
+use commission::{CapturedMotion, excitations, softened, swinging};
 use config::machine::MachineFile;
 use host_link::spool::Spooling;
 use host_link::{Control, Remote};
-use job::{ExcitationRun, PlannedCircle, Work};
+use job::{ExcitationRun, JobError, PlannedCircle, Work};
 use report::write_circle;
+use shared::config::MotionConfig;
 use std::path::Path;
 
-/// Measures motors, by their indices. Each that was measured whole is kept, also where a later one could not be.
+/// Measures motors, by their indices; those that swing by themselves again, in slower loops. Each that was measured whole is kept,
+/// also where a later one could not be.
 pub(super) fn measure(
     machine: &Machine,
     motors: &[usize],
@@ -19,32 +21,47 @@ pub(super) fn measure(
     remote: &Remote,
     mut control: Control,
 ) -> anyhow::Result<Outcome> {
-    let softened = MachineFile {
-        motion: softened(&machine.is.motion),
-        ..machine.is.clone()
+    let soft = softened(&machine.is.motion);
+    let mut excite = |motion: MotionConfig, motors: &[usize]| {
+        let softened = MachineFile {
+            motion,
+            ..machine.is.clone()
+        };
+        let told = motors.iter().map(|motor| excitations(&machine.is.motion, *motor));
+        let run = ExcitationRun {
+            excitations: told.flatten().collect(),
+        };
+        let job = bare(&softened, Work::Excite(&run), Spooling::nothing());
+        let mut boards = connect(&softened, place, remote)?;
+        let record = job::run(boards.as_mut(), &job, &mut control)?;
+        keep_whole(machine, motors, &record.taught.captured)?;
+        anyhow::Ok((record.error, record.taught.captured))
     };
-    let told = |motor: usize| excitations(&machine.is.motion, motor);
-    let run = ExcitationRun {
-        excitations: motors.iter().flat_map(|motor| told(*motor)).collect(),
-    };
-    let job = bare(&softened, Work::Excite(&run), Spooling::nothing());
-    let mut boards = connect(&softened, place, remote)?;
-    let record = job::run(boards.as_mut(), &job, &mut control)?;
+    let (mut error, captured) = excite(soft.clone(), motors)?;
+    let again = swinging(&machine.is.motion, motors, &captured);
+    if error.is_none() && !again.is_empty() {
+        (error, _) = excite(softened(&soft), &again)?;
+    }
+    Ok(Outcome {
+        error: error.as_ref().map(JobError::to_string),
+        ..Outcome::default()
+    })
+}
+
+/// Keeps what was captured of those motors that were measured whole.
+fn keep_whole(machine: &Machine, motors: &[usize], captured: &[CapturedMotion]) -> anyhow::Result<()> {
     for index in motors {
-        let captured = record.taught.captured.iter();
         let own: Vec<_> = captured
+            .iter()
             .filter(|captured| usize::from(captured.excitation.motor) == *index)
             .collect();
         if let Some(motor) = &machine.is.motion.motors[*index]
-            && own.len() == told(*index).len()
+            && own.len() == excitations(&machine.is.motion, *index).len()
         {
             keep(&machine.file, *index, motor, &own)?;
         }
     }
-    Ok(Outcome {
-        error: record.error.as_ref().map(ToString::to_string),
-        ..Outcome::default()
-    })
+    Ok(())
 }
 
 /// Goes round, and draws that into a folder of its own among the reports.

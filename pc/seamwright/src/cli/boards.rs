@@ -7,7 +7,7 @@ use clap::Args;
 use config::machine::MachineFile;
 use emulator::PLANT_VARIABLE;
 use host_link::events::Interest;
-use host_link::{Command, control};
+use host_link::{Command, Remote, control};
 use job::{Job, JobError, Names, Work, run};
 use plant_file::{CameraMount, PlantChoice, PlantFileError};
 use report::{Ended, LogColumns, LogWriter, ended};
@@ -16,6 +16,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use world::{BoardChoice, BoardsError, Surroundings};
 
@@ -72,9 +73,7 @@ impl BoardArgs {
         log: Option<&Path>,
     ) -> anyhow::Result<Result<Ended, ExitCode>> {
         let (remote, mut control) = control();
-        let stopped = remote.clone();
-        // A stop needs no room.
-        ctrlc::set_handler(move || _ = stopped.send(Command::Stop)).context("cannot watch for Ctrl-C")?;
+        stopped_by_ctrl_c(&remote)?;
         let (choice, wanted) = (self.choice.clone(), job.machine.motion.kinematics.name());
         let plant = self.plant();
         let tracked = job.machine.tracking.is_some();
@@ -154,6 +153,23 @@ impl BoardArgs {
     fn plant(&self) -> PlantChoice {
         self.plant.clone().unwrap_or_default()
     }
+}
+
+/// Has Ctrl-C stop the job of this `remote` from now on, and no other.
+fn stopped_by_ctrl_c(remote: &Remote) -> anyhow::Result<()> {
+    static JOB: Mutex<Option<Remote>> = Mutex::new(None);
+    let job = || JOB.lock().unwrap_or_else(PoisonError::into_inner);
+    let watched = job().replace(remote.clone()).is_some();
+    if watched {
+        return Ok(());
+    }
+    let stop = move || {
+        if let Some(remote) = &*job() {
+            // A stop needs no room.
+            _ = remote.send(Command::Stop);
+        }
+    };
+    ctrlc::set_handler(stop).context("cannot watch for Ctrl-C")
 }
 
 /// Does `connect`, which may wait for boards that are silent, unless the operator gives up before: `None`.

@@ -5,10 +5,11 @@ use crate::console::outln;
 use crate::terminal::Operator;
 use anyhow::{Context, bail};
 use clap::Args;
-use commission::{CapturedMotion, Found, Margins, excitations, measured, rewrite_all, softened};
+use commission::{CapturedMotion, Found, Margins, excitations, measured, rewrite_all, softened, swinging};
 use config::machine::MachineFile;
-use job::{ExcitationRun, Work, stopped};
-use report::{prepare, write_motor};
+use job::{ExcitationRun, JobError, Work, stopped};
+use report::{Ended, prepare, write_motor};
+use shared::config::MotionConfig;
 use shared::io::{MOTOR_AXIS, MOTOR_NAMES, MOTORS};
 use shared::kinematics::AXIS_UNIT;
 use std::path::PathBuf;
@@ -53,31 +54,65 @@ impl Commission {
         if let Some(report) = &self.report {
             prepare(report)?;
         }
+        let soft = softened(&machine.motion);
+        let ended = match self.measure(&machine, soft.clone(), &motors)? {
+            Ok(ended) => ended,
+            Err(code) => return Ok(code),
+        };
+        if ended.error.is_some() {
+            return exit_code(ended.error);
+        }
+        let mut captured = ended.taught.captured;
+        let again = swinging(&machine.motion, &motors, &captured);
+        if !again.is_empty() {
+            let names: Vec<_> = again.iter().map(|motor| MOTOR_NAMES[*motor]).collect();
+            outln!("measured again, in slower loops: {}", names.join(", "));
+            let ended = match self.measure(&machine, softened(&soft), &again)? {
+                Ok(ended) => ended,
+                Err(code) => return Ok(code),
+            };
+            match ended.error {
+                Some(JobError::Interrupted) => return exit_code(Some(JobError::Interrupted)),
+                // What is known of the others is kept.
+                Some(error) => outln!("{error}"),
+                None => {
+                    captured.retain(|captured| !again.contains(&usize::from(captured.excitation.motor)));
+                    captured.extend(ended.taught.captured);
+                }
+            }
+        }
+        self.write(&machine, &motors, &captured)?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Excites `motors` of the `machine` in its `softened` loops, and says of one that tripped why it did.
+    fn measure(
+        &self,
+        machine: &MachineFile,
+        softened: MotionConfig,
+        motors: &[usize],
+    ) -> anyhow::Result<Result<Ended, ExitCode>> {
         let excitations = motors
             .iter()
             .flat_map(|motor| excitations(&machine.motion, *motor))
             .collect();
         let run = ExcitationRun { excitations };
         let softened = MachineFile {
-            motion: softened(&machine.motion),
+            motion: softened,
             ..machine.clone()
         };
         let of = (&softened, &*self.machine);
         let job = self
             .boards
             .bare_job(of, Work::Excite(&run), "commissioning".to_owned());
-        let ended = match self.boards.run(&job, Operator::LooksOn, None)? {
-            Ok(ended) => ended,
-            Err(code) => return Ok(code),
-        };
-        if let Some(error) = ended.error {
-            if let Some((motor, why)) = stopped(&machine.motion, &error, &ended.record) {
-                outln!("{}: {why}", MOTOR_NAMES[motor]);
-            }
-            return exit_code(Some(error));
+        let ended = self.boards.run(&job, Operator::LooksOn, None)?;
+        if let Ok(ended) = &ended
+            && let Some(error) = &ended.error
+            && let Some((motor, why)) = stopped(&machine.motion, error, &ended.record)
+        {
+            outln!("{}: {why}", MOTOR_NAMES[motor]);
         }
-        self.write(&machine, &motors, &ended.taught.captured)?;
-        Ok(ExitCode::SUCCESS)
+        Ok(ended)
     }
 
     /// Indices of the motors.
