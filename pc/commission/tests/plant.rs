@@ -615,7 +615,7 @@ fn what_cannot_be_commissioned_is_refused_for_what_is_wrong_with_it() {
             }
             let found = refused(&|motor| motor.mechanics.modes = [soft(7.0)].into_iter().collect());
             assert!(
-                matches!(found, Some(Refusal::Resonance { hz, .. }) if (3.5..15.0).contains(&hz)),
+                matches!(found, Some(Refusal::Resonance { hz, .. } | Refusal::Swings { hz }) if (3.5..15.0).contains(&hz)),
                 "{found:?}"
             );
         }
