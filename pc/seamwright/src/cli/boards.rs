@@ -155,12 +155,15 @@ impl BoardArgs {
     }
 }
 
-/// Has Ctrl-C stop the job of this `remote` from now on, and no other.
+/// Has Ctrl-C stop the job of this `remote` from now on; at once if it came since the job before.
 fn stopped_by_ctrl_c(remote: &Remote) -> anyhow::Result<()> {
     static JOB: Mutex<Option<Remote>> = Mutex::new(None);
     let job = || JOB.lock().unwrap_or_else(PoisonError::into_inner);
-    let watched = job().replace(remote.clone()).is_some();
-    if watched {
+    let before = job().replace(remote.clone());
+    if let Some(before) = before {
+        if before.stop_flag().load(Ordering::Relaxed) {
+            _ = remote.send(Command::Stop);
+        }
         return Ok(());
     }
     let stop = move || {
