@@ -1,4 +1,4 @@
-//! True position of the tool, from the positions of the axes.
+//! Where the tool truly is, from the positions of the axes.
 
 use crate::record::MachinePosition;
 use shared::config::MotionConfig;
@@ -6,30 +6,52 @@ use shared::geometry::Pose;
 use shared::io::AXES;
 use shared::kinematics::Kinematics;
 use shared::parameter::ParameterError;
+use std::fmt;
+use std::sync::Arc;
 
-/// Geometry of the machine as it really is.
+/// A machine whose geometry is another one than its controller believes.
+pub trait TrueTool: fmt::Debug + Send + Sync {
+    /// Pose of the tool for `axes` (mm, rad), in the frame of the work.
+    fn forward(&self, axes: &[f64; AXES]) -> Pose;
+}
+
+/// Geometry of the machine as it is believed, and as it truly is where that is known.
 #[derive(Clone, Debug)]
 pub struct MachineGeometry {
     kinematics: Kinematics,
     /// Cross positions of X1 and X2 \[mm\], where X is a gantry.
     beam_mm: Option<[f64; 2]>,
+    tool: Option<Arc<dyn TrueTool>>,
 }
 
 impl MachineGeometry {
     /// Of `kinematics` and, where X is a gantry, the cross positions of X1 and X2 \[mm\].
     pub const fn new(kinematics: Kinematics, beam_mm: Option<[f64; 2]>) -> Self {
-        Self { kinematics, beam_mm }
+        Self {
+            kinematics,
+            beam_mm,
+            tool: None,
+        }
     }
 
-    /// Builds the geometry; errors name the parameter.
+    /// Of a machine that is as it is believed; errors name the parameter.
     pub fn build(motion: &MotionConfig) -> Result<Self, ParameterError> {
         Ok(Self {
             kinematics: motion.kinematics()?,
             beam_mm: motion.gantry.as_ref().map(|gantry| [gantry.y1_mm, gantry.y2_mm]),
+            tool: None,
         })
     }
 
-    /// Kinematics of the machine.
+    /// The same of a machine that is not.
+    pub fn truly(self, tool: Arc<dyn TrueTool>) -> Self {
+        Self {
+            tool: Some(tool),
+            ..self
+        }
+    }
+
+    /// Kinematics that the controller believes.
     pub fn kinematics(&self) -> &Kinematics {
         &self.kinematics
     }
@@ -45,9 +67,17 @@ impl MachineGeometry {
         }
     }
 
-    /// Pose of the tool, in the frame of the work.
+    /// Where the tool truly is with the machine at `position`, in the frame of the work.
     pub fn pose(&self, position: &MachinePosition) -> Pose {
-        self.kinematics.forward(&self.axes(position))
+        self.tool(&self.axes(position))
+    }
+
+    /// The same, of axes that are truly there (mm, rad).
+    pub fn tool(&self, axes: &[f64; AXES]) -> Pose {
+        match &self.tool {
+            Some(tool) => tool.forward(axes),
+            None => self.kinematics.forward(axes),
+        }
     }
 }
 
@@ -67,6 +97,7 @@ mod tests {
             .build(&[AxisLimits::NOT_FITTED; shared::io::AXES])
             .unwrap(),
             beam_mm: Some([-250.0, 3250.0]),
+            tool: None,
         }
     }
 

@@ -17,7 +17,7 @@ pub const BODIES: usize = 8;
 pub const ERRORS: usize = 24;
 
 /// Most bytes of a [`PlantConfig`] in postcard, as an emulated board reads it.
-pub const LONGEST: usize = 4096;
+pub const LONGEST: usize = 6144;
 
 /// What both boards are wired to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,10 +28,26 @@ pub struct PlantConfig {
     pub slides: [Option<SlideConfig>; SLIDES],
     /// Errors of its geometry.
     pub geometry: Vec<GeometryConfig, ERRORS>,
+    /// The beam between the two motors of X; without one each moves on its own.
+    pub beam: Option<BeamConfig>,
     /// What the axes touch; without it every input of the process is on, as if the process always answered.
     pub touch: Option<TouchConfig>,
     /// Start of all noise.
     pub seed: u32,
+}
+
+/// The beam of a gantry on its two motors, which it keeps square as a spring does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BeamConfig {
+    /// At which it yaws with both drives free \[Hz\].
+    pub yaw_hz: f64,
+    /// Damping ζ of that.
+    pub damping: f64,
+    /// By which part of the acceleration of the other end each end is pushed back, since the beam is one body. Masses m at the ends
+    /// and a beam of mass M and inertia J over the length L give (M/4 − J/L²)/(m + M/4 + J/L²).
+    #[serde(default)]
+    pub share: f64,
 }
 
 /// What the axes touch.
@@ -68,6 +84,31 @@ pub struct GeometryConfig {
     pub wave: Wave,
 }
 
+/// An angle by which a joint turns what it carries, over the way of its axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AngularError {
+    /// At the zero of the axis: what the joint carries is not square to it \[deg\].
+    #[serde(default)]
+    pub constant: f64,
+    /// For each unit of the axis \[deg\].
+    #[serde(default)]
+    pub slope: f64,
+    /// Over the axis \[deg\].
+    #[serde(default)]
+    pub wave: Wave,
+}
+
+/// About x, y and z of the work's frame, as it stands with all axes at 0: roll, pitch and yaw of X.
+pub type AngularErrors = [AngularError; 3];
+
+impl AngularError {
+    /// Its angle with the axis at `along` (mm, deg) \[rad\].
+    pub fn at(&self, along: f64) -> f64 {
+        (self.constant + self.slope * along + self.wave.at(along)).to_radians()
+    }
+}
+
 /// One motor: its drive, what it moves, its grating.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -80,6 +121,34 @@ pub struct MotorConfig {
     pub mechanics: MechanicsConfig,
     /// The grating and its switches.
     pub grating: GratingConfig,
+    /// Where it stands.
+    #[serde(default)]
+    pub environment: EnvironmentConfig,
+}
+
+/// Warmth and the floor.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EnvironmentConfig {
+    /// What it moves grows away from the grating by so much.
+    #[serde(default)]
+    pub growth: Growth,
+    /// Its grating grows away from the mark by this part of its length.
+    #[serde(default)]
+    pub grating_growth: Growth,
+    /// The floor is accelerated along the axis, over time: the amplitude is in 1/s², the period in s.
+    #[serde(default)]
+    pub floor: Wave,
+}
+
+/// Growth from power-up on, towards an end: amount · (1 − exp(−t/τ)).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Growth {
+    /// In the end.
+    pub amount: f64,
+    /// Time constant τ \[s\].
+    pub time_constant_s: f64,
 }
 
 /// A velocity-mode drive: a PI loop on the speed of its motor with the double pole −ωv/2, behind a dead time
@@ -248,6 +317,42 @@ impl Wave {
     }
 }
 
+impl Default for Growth {
+    /// None.
+    fn default() -> Self {
+        Self {
+            amount: 0.0,
+            time_constant_s: 1.0,
+        }
+    }
+}
+
+impl Growth {
+    /// Its value `time_s` after power-up.
+    pub fn at(&self, time_s: f64) -> f64 {
+        if self.amount == 0.0 {
+            return 0.0;
+        }
+        self.amount * -libm::expm1(-time_s / self.time_constant_s)
+    }
+}
+
+impl EnvironmentConfig {
+    fn scaled(&self, unit: f64) -> Self {
+        Self {
+            growth: Growth {
+                amount: self.growth.amount * unit,
+                ..self.growth
+            },
+            floor: Wave {
+                amplitude: self.floor.amplitude * unit,
+                ..self.floor
+            },
+            ..self.clone()
+        }
+    }
+}
+
 impl MotorConfig {
     /// The same in another unit, of which one of the axis has `unit`.
     pub(crate) fn scaled(&self, unit: f64) -> Self {
@@ -263,6 +368,7 @@ impl MotorConfig {
             },
             mechanics: self.mechanics.scaled(unit),
             grating: self.grating.scaled(unit),
+            environment: self.environment.scaled(unit),
         }
     }
 }

@@ -57,7 +57,17 @@ pub struct Drive {
     delayed: [f64; LONGEST_FIFO],
     fifo: usize,
     oldest: usize,
+    outside: Outside,
     state: State,
+}
+
+/// What accelerates a motor and its load from outside \[1/s²\].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outside {
+    /// Forces on them.
+    pub pull: f64,
+    /// The floor, beside which they are.
+    pub floor: f64,
 }
 
 impl Drive {
@@ -94,6 +104,7 @@ impl Drive {
             delayed: [0.0; LONGEST_FIFO],
             fifo: (dead_steps + 1).min(LONGEST_FIFO),
             oldest: 0,
+            outside: Outside::default(),
             state: State {
                 integral: 0.0,
                 velocity: 0.0,
@@ -105,13 +116,19 @@ impl Drive {
         }
     }
 
+    /// From now on it is accelerated so.
+    pub fn accelerate(&mut self, outside: Outside) {
+        self.outside = outside;
+    }
+
     /// `steps` steps with the velocity `command` \[1/s\], in which noise and cogging stay as they are.
     pub fn run(&mut self, command: f64, steps: u32) {
         let mut told = self.gain * command + self.offset;
         if self.noise.0 > 0.0 {
             told += self.noise.0 * self.noise.1.draw();
         }
-        let pull = self.cogging.at(self.state.motor) - self.coefficients.gravity;
+        let Outside { pull, floor } = self.outside;
+        let pull = pull - floor + self.cogging.at(self.state.motor) - self.coefficients.gravity;
         for _ in 0..steps {
             let delayed = core::mem::replace(&mut self.delayed[self.oldest], told);
             self.oldest = if self.oldest + 1 < self.fifo {
@@ -119,7 +136,7 @@ impl Drive {
             } else {
                 0
             };
-            self.state.drive(&self.coefficients, delayed, pull);
+            self.state.drive(&self.coefficients, delayed, [pull, floor]);
         }
     }
 
@@ -128,7 +145,7 @@ impl Drive {
         self.delayed = [0.0; LONGEST_FIFO];
         self.state.integral = 0.0;
         for _ in 0..steps {
-            self.state.brake(&self.coefficients);
+            self.state.brake(&self.coefficients, self.outside.floor);
         }
     }
 
@@ -149,7 +166,9 @@ impl Drive {
 }
 
 impl State {
-    fn drive(&mut self, by: &Coefficients, command: f64, pull: f64) {
+    /// A step with these forces on motor and load, beside a floor that is accelerated so. A resonance feels what the body truly is
+    /// accelerated by, with the floor.
+    fn drive(&mut self, by: &Coefficients, command: f64, [pull, floor]: [f64; 2]) {
         let velocity = self.motor_velocity();
         let error = command - velocity;
         self.integral = limit(self.integral + by.integral_step * error, by.max_acceleration);
@@ -161,7 +180,7 @@ impl State {
         } else {
             self.slide(by, force);
         }
-        self.swing(by.step, (self.velocity - before) / by.step);
+        self.swing(by.step, (self.velocity - before) / by.step + floor);
         self.follow(by);
     }
 
@@ -197,10 +216,10 @@ impl State {
         by.friction * self.bristle / by.presliding
     }
 
-    fn brake(&mut self, by: &Coefficients) {
+    fn brake(&mut self, by: &Coefficients, floor: f64) {
         let before = self.velocity;
         self.velocity -= limit(self.velocity, by.brake_step);
-        self.swing(by.step, (self.velocity - before) / by.step);
+        self.swing(by.step, (self.velocity - before) / by.step + floor);
         self.follow(by);
     }
 

@@ -7,6 +7,8 @@
 //! Inside, lengths are mm and angles rad; plant files are written in mm and degrees.
 #![no_std]
 
+mod beam;
+mod chain;
 mod config;
 mod drive;
 mod geometry;
@@ -17,11 +19,13 @@ mod noise;
 mod slides;
 mod touch;
 
+pub use chain::TrueChain;
 pub use config::{
-    BODIES, BodyConfig, DriveConfig, ERRORS, GeometryConfig, GratingConfig, LONGEST, MODES, MechanicsConfig,
-    ModeConfig, MotorConfig, PlantConfig, SlideConfig, TouchConfig, Wave,
+    AngularError, AngularErrors, BODIES, BeamConfig, BodyConfig, DriveConfig, ERRORS, EnvironmentConfig,
+    GeometryConfig, GratingConfig, Growth, LONGEST, MODES, MechanicsConfig, ModeConfig, MotorConfig,
+    PlantConfig, SlideConfig, TouchConfig, Wave,
 };
-pub use drive::Drive;
+pub use drive::{Drive, Outside};
 pub use grating::{Grating, GratingFault, Reading};
 pub use motion::MotionPlant;
 pub use noise::Noise;

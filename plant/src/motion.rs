@@ -1,5 +1,6 @@
 //! What a motion board is wired to: the servo axes of a machine, and its beams.
 
+use crate::beam::Beam;
 use crate::config::{ERRORS, GeometryConfig, PlantConfig, TouchConfig};
 use crate::geometry::axes;
 use crate::motor::RunningMotor;
@@ -23,6 +24,7 @@ pub struct MotionPlant {
     /// Their power, regardless of commands.
     stuck: [Option<DacCode>; SIDES],
     geometry: Vec<GeometryConfig, ERRORS>,
+    beam: Option<Beam>,
     touch: Option<TouchConfig>,
 }
 
@@ -39,6 +41,7 @@ impl MotionPlant {
             power: [0.0; SIDES],
             stuck: [None; SIDES],
             geometry: config.geometry.clone(),
+            beam: config.beam.as_ref().map(Beam::new),
             touch: config.touch.clone(),
         }
     }
@@ -73,9 +76,13 @@ impl MotionPlant {
             self.power[side] = gives.ratio();
             feedback.beam_power[side] = Some(gives);
         }
+        let pulls = match (&mut self.beam, &self.motors) {
+            (Some(beam), [Some(x1), Some(x2), ..]) => beam.pulls([x1.drive(), x2.drive()]),
+            _ => [0.0; 2],
+        };
         for (i, motor) in self.motors.iter_mut().enumerate() {
             let Some(motor) = motor else { continue };
-            let reading = motor.advance(*enable, dac[i]);
+            let reading = motor.advance(*enable, dac[i], pulls.get(i).copied().unwrap_or_default());
             feedback.counts[i] = reading.counts;
             feedback.mark[i] = reading.mark;
             feedback.limit_minus.set(i, reading.limit_minus);

@@ -1,13 +1,14 @@
 //! One motor of a machine: its drive, its grating with mark and limit switches, and where it stood when it was
 //! switched on.
 
-use crate::config::MotorConfig;
+use crate::config::{EnvironmentConfig, MotorConfig};
+use crate::drive::Outside;
 use crate::noise::Noise;
 use crate::{Drive, Grating, Reading};
 use shared::io::DacCode;
 
 /// Servo tick \[s\].
-const TICK: f64 = 250e-6;
+pub(crate) const TICK: f64 = 250e-6;
 /// Steps of the drive model in a servo tick: h = 50 µs as in mathematics 0.11.
 const STEPS: u32 = 5;
 
@@ -20,6 +21,9 @@ pub struct RunningMotor {
     braked_ticks: u32,
     drive: Drive,
     grating: Grating,
+    environment: EnvironmentConfig,
+    mark: f64,
+    time_s: f64,
 }
 
 impl RunningMotor {
@@ -40,12 +44,19 @@ impl RunningMotor {
                 noise(0),
             ),
             grating: Grating::new(&config.grating, config.power_up, noise(1)),
+            environment: config.environment,
+            mark: config.grating.mark,
+            time_s: 0.0,
         }
     }
 
-    /// One servo tick with the velocity command `dac`, or with the brake closed, and what its grating and switches
-    /// tell at the end.
-    pub fn advance(&mut self, enable: bool, dac: DacCode) -> Reading {
+    /// One servo tick with the velocity command `dac`, or with the brake closed, while what it moves is pulled so \[1/s²\]; what its
+    /// grating and switches tell at the end.
+    pub fn advance(&mut self, enable: bool, dac: DacCode, pull: f64) -> Reading {
+        self.drive.accelerate(Outside {
+            pull,
+            floor: self.environment.floor.at(self.time_s),
+        });
         if enable && self.braked_ticks == 0 {
             self.drive.run(dac.ratio() * self.velocity_at_10v, STEPS);
         } else {
@@ -55,11 +66,20 @@ impl RunningMotor {
             };
             self.drive.brake(STEPS);
         }
-        self.grating.read(self.drive.at_grating())
+        self.time_s += TICK;
+        let place = self.drive.at_grating();
+        let grown = self.environment.grating_growth.at(self.time_s);
+        // A longer scale has fewer lines on the way.
+        self.grating.read(place - grown * (place - self.mark))
     }
 
     /// True position of the load at the tool.
     pub fn position(&self) -> f64 {
-        self.drive.at_tool()
+        self.drive.at_tool() + self.environment.growth.at(self.time_s)
+    }
+
+    /// Its drive and mechanics.
+    pub fn drive(&self) -> &Drive {
+        &self.drive
     }
 }

@@ -12,7 +12,7 @@ use report::Ended;
 use shared::io::SIDES;
 use shared::state::TrackerFault;
 use std::path::Path;
-use world::{CameraChoice, Dark, Deviation, PictureChoice, SceneFile, Surroundings};
+use world::{CameraChoice, Dark, Deviation, PictureChoice, SceneFile, Surroundings, TrueMachine};
 
 /// Noise of welds of which one is enough.
 pub(crate) const SEED: u64 = 1;
@@ -63,7 +63,7 @@ pub fn weld_commissioned(boards: &mut dyn Boards, plant: &PlantFile, speed_m_per
     let machine = MachineFile::read(&file).unwrap_or_else(|error| panic!("{error}"));
     let surroundings = Surroundings {
         seed: SEED,
-        mounts: plant.cameras,
+        truth: TrueMachine::new(plant, &machine).unwrap_or_else(|error| panic!("{error}")),
         ..with_seam(Some(shipped_seam()))
     };
     let folder = file.parent().expect("a folder");

@@ -63,6 +63,7 @@ impl Bench {
             motors,
             slides: [const { None }; SLIDES],
             geometry: Default::default(),
+            beam: None,
             touch: None,
             seed: 7,
         };

@@ -63,7 +63,7 @@ impl RunSamples for RecordedRun<'_> {
                 speed_mm_s: sample.speed_mm_s,
                 beams: sample.beams,
                 axes,
-                pose: self.machine.kinematics().forward(&axes),
+                pose: self.machine.tool(&axes),
             }
         }))
     }

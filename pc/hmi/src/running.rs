@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
-use world::{BoardChoice, BoardsError, CameraChoice, Deviation, PictureChoice, Surroundings};
+use world::{BoardChoice, BoardsError, CameraChoice, Deviation, PictureChoice, Surroundings, TrueMachine};
 
 /// Events that wait for the screen: some seconds of both boards. What comes beyond is lost for the screen, and only for it.
 const WAITING: usize = 4096;
@@ -343,7 +343,9 @@ fn surroundings(
     let mut surroundings = Surroundings::default();
     if !is_real {
         surroundings.seam = seam.cloned();
-        surroundings.mounts = place.plant.of(machine.motion.kinematics.name())?.cameras;
+        let plant = place.plant.of(machine.motion.kinematics.name())?;
+        surroundings.truth =
+            TrueMachine::new(&plant, machine).with_context(|| format!("plant file {}", place.plant))?;
     }
     if let Some(unit) = &machine.tracking {
         let folder = file.parent().unwrap_or(Path::new(""));

@@ -109,8 +109,8 @@ pub trait PictureSource: Send {
         false
     }
 
-    /// How long after its strobe the simulated camera of `side` exposes \[µs\].
-    fn delay_us(&self, _side: usize) -> u64 {
+    /// How long after the strobe of `capture` the simulated camera of `side` exposes \[µs\].
+    fn delay_us(&self, _capture: u32, _side: usize) -> u64 {
         0
     }
 

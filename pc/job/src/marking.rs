@@ -9,7 +9,6 @@ use crate::session::Session;
 use crate::{Job, JobError, Weld};
 use config::calibration::Calibration;
 use host_link::events::Phase;
-use host_link::record::MachinePosition;
 use nalgebra::Vector3;
 use nc::text::tip_words;
 use nc::{Options, Program, interpret};
@@ -246,7 +245,7 @@ impl Weld {
         }
         match ends {
             [Some((_, on)), Some((_, off))] => Ok([on, off].map(|axes| {
-                let pose = session.machine.pose(&MachinePosition::Axes(axes));
+                let pose = session.machine.kinematics().forward(&axes);
                 place.head(&pose, side, [slides[2 * side], slides[2 * side + 1]])
             })),
             _ => Err(JobError::Calibrate(format!(
@@ -281,7 +280,7 @@ impl Weld {
         let noted = run.noted.take();
         let at = |session: &Session, time_us: u64, slides: [f64; 2]| {
             let axes = session.record.axes_at(time_us)?;
-            let pose = session.machine.pose(&MachinePosition::Axes(axes));
+            let pose = session.machine.kinematics().forward(&axes);
             Some(place.head(&pose, run.marking.side, slides))
         };
         let seen = noted.iter().filter_map(|sighting| {

@@ -66,7 +66,7 @@ impl<'a> Session<'a> {
         spooling: Spooling,
         control: &'a mut Control,
     ) -> Result<Self, JobError> {
-        let geometry = MachineGeometry::build(&machine.motion)?;
+        let geometry = around.geometry(&machine.motion)?;
         let began = boards.now();
         let unit = machine.tracking.as_ref();
         let tracking = unit

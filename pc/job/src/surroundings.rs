@@ -6,13 +6,24 @@ use crate::teaching::RangingProbe;
 use cam::path::{PlannedPath, Planner};
 use config::machine::{MachineFile, TrackingUnit};
 use evaluate::SeamTruth;
+use host_link::geometry::MachineGeometry;
 use parts::PartFile;
+use shared::config::MotionConfig;
+use shared::parameter::ParameterError;
 use shared::tracking::frames::Heads;
 use std::error::Error;
 use std::sync::Arc;
 
 /// What is around a machine: what sees its seams, and in a simulated world the seams themselves.
 pub trait Surroundings: Send + Sync {
+    /// The geometry of the machine, also as it truly is where that is known.
+    ///
+    /// # Errors
+    /// [`ParameterError`].
+    fn geometry(&self, motion: &MotionConfig) -> Result<MachineGeometry, ParameterError> {
+        MachineGeometry::build(motion)
+    }
+
     /// Opens what sees the seams of a machine that follows some.
     ///
     /// # Errors

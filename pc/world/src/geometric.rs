@@ -84,7 +84,8 @@ impl SeamCameras for GeometricCameras {
             if next.due_us > at.now_us {
                 break;
             }
-            let exposed = |mount: &Mounted| (at.position)(next.strobe_us + mount.delay_us());
+            let exposed =
+                |mount: &Mounted| (at.position)(next.strobe_us + mount.delay_us(next.capture.number));
             match self.mounts.each_ref().map(exposed) {
                 [Some(first), Some(second)] => {
                     let positions = [first, second];

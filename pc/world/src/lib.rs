@@ -19,6 +19,7 @@ pub mod simulated;
 mod surroundings;
 #[cfg(test)]
 mod tests;
+mod true_machine;
 
 pub use boards::BoardChoice;
 pub use deviation::{Deviation, SeamError, check_seam};
@@ -34,3 +35,4 @@ pub use rendered::{
 };
 pub use seams::{Crossing, SharedSeams, TrueSeam, TrueSeams};
 pub use surroundings::{CameraChoice, DrawingError, PictureChoice, Surroundings, Workpiece, World};
+pub use true_machine::TrueMachine;

@@ -2,16 +2,19 @@
 
 use crate::deviation::{check_facing, check_seam};
 use crate::rendered::RenderedPictures;
-use crate::{Deviation, GeometricCameras, SceneFile, SeamError, SharedSeams, SimulatedProbe, TrueSeams};
+use crate::{
+    Deviation, GeometricCameras, SceneFile, SeamError, SharedSeams, SimulatedProbe, TrueMachine, TrueSeams,
+};
 use cam::path::{PathError, PlannedPath, Planner};
 use camera::OpenCamera;
 use config::machine::{MachineFile, TrackingUnit};
 use evaluate::SeamTruth;
+use host_link::geometry::MachineGeometry;
 use job::{ImageCameras, Images, ImagesError, RangingProbe, SeamCameras, SurroundingsError};
 use nc::Program;
 use parts::PartFile;
-use plant_file::CameraMount;
-use shared::io::SIDES;
+use shared::config::MotionConfig;
+use shared::parameter::ParameterError;
 use shared::tracking::frames::Heads;
 use std::sync::{Arc, Mutex, PoisonError};
 use thiserror::Error;
@@ -30,8 +33,8 @@ pub struct Surroundings {
     pub cameras: CameraChoice,
     /// Start of all noise.
     pub seed: u64,
-    /// How simulated cameras are mounted.
-    pub mounts: [CameraMount; SIDES],
+    /// How a simulated machine is.
+    pub truth: TrueMachine,
     /// What lies before rendered cameras.
     pub work: Workpiece,
 }
@@ -53,7 +56,7 @@ impl Default for Surroundings {
             drawing: None,
             cameras: CameraChoice::default(),
             seed: 1,
-            mounts: Default::default(),
+            truth: TrueMachine::default(),
             work: Workpiece::default(),
         }
     }
@@ -140,12 +143,15 @@ impl World {
 }
 
 impl job::Surroundings for World {
+    fn geometry(&self, motion: &MotionConfig) -> Result<MachineGeometry, ParameterError> {
+        self.settings.truth.geometry(motion)
+    }
+
     fn cameras(&self, unit: &TrackingUnit, heads: Heads) -> Result<Box<dyn SeamCameras>, ImagesError> {
         let seams = SharedSeams::new(TrueSeams::none(heads));
         *self.seams.lock().unwrap_or_else(PoisonError::into_inner) = Some(seams.clone());
-        let Surroundings {
-            seed, mounts, work, ..
-        } = self.settings;
+        let Surroundings { seed, work, .. } = self.settings;
+        let mounts = self.settings.truth.mounts;
         Ok(match &self.settings.cameras {
             CameraChoice::Geometric => Box::new(GeometricCameras::new(
                 (unit.cameras.processing_ms * 1e3) as u64,

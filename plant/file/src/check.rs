@@ -1,8 +1,11 @@
 //! Values that make no sense.
 
 use crate::PlantFile;
-use crate::read::Mistake;
-use plant::{DriveConfig, GratingConfig, MechanicsConfig, ModeConfig, SlideConfig, TouchConfig, Wave};
+use crate::read::{ABOUT, Mistake};
+use plant::{
+    DriveConfig, EnvironmentConfig, GratingConfig, Growth, MechanicsConfig, ModeConfig, SlideConfig,
+    TouchConfig, Wave,
+};
 use shared::io::{AXIS_NAMES, MOTOR_NAMES, PROCESS_INPUTS, SLIDE_NAMES};
 
 /// Longest dead times of the models \[s\].
@@ -10,6 +13,8 @@ const DRIVE_DEAD_TIME: f64 = 2e-3;
 const SLIDE_DEAD_TIME: f64 = 4e-3;
 /// Highest frequency of a resonance \[Hz\]: its model is stable up to 6.4 kHz, and right to 1 % of its frequency up to this.
 const HIGHEST_MODE: f64 = 1500.0;
+/// Highest frequency at which a gantry yaws \[Hz\]: its model, by ticks of 250 µs, is right to some percent of the damping up to this.
+const HIGHEST_YAW: f64 = 100.0;
 /// Longest time until a brake opens \[s\].
 const MOST_ENABLE: f64 = 2.0;
 /// Bandwidths that the model of a drive resolves \[Hz\].
@@ -18,6 +23,9 @@ const BANDWIDTH: [f64; 2] = [1.0, 1000.0];
 const LEAD_ERROR: [f64; 2] = [-5.0, 5.0];
 /// Longest delay of a camera's exposure \[s\]: some frames.
 const CAMERA_DELAY: f64 = 0.02;
+
+/// Angles of joints and cameras that are not as they should be \[deg\].
+const ANGLE_DEG: [f64; 2] = [-2.0, 2.0];
 
 /// What a value must be.
 enum Must {
@@ -53,6 +61,7 @@ pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
         drive(&format!("{key}.drive"), &motor.drive)?;
         mechanics(&format!("{key}.mechanics"), &motor.mechanics)?;
         grating(&format!("{key}.grating"), &motor.grating)?;
+        environment(&format!("{key}.environment"), &motor.environment)?;
     }
     for (name, config) in SLIDE_NAMES.iter().zip(&file.plant.slides) {
         if let Some(config) = config {
@@ -65,6 +74,32 @@ pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
         all(&key, &[("slope", error.slope, BeWithin(-0.01, 0.01))])?;
         wave(&format!("{key}.wave"), &error.wave)?;
     }
+    for (along, errors) in AXIS_NAMES.iter().zip(&file.angular) {
+        for (about, error) in ABOUT.iter().zip(errors) {
+            let key = format!("angular.{about}.{along}");
+            let [least, most] = ANGLE_DEG;
+            all(
+                &key,
+                &[
+                    ("constant", error.constant, BeWithin(least, most)),
+                    ("slope", error.slope, BeWithin(-0.01, 0.01)),
+                ],
+            )?;
+            wave(&format!("{key}.wave"), &error.wave)?;
+        }
+    }
+    if let Some(beam) = &file.plant.beam {
+        let values = [
+            ("yaw_hz", beam.yaw_hz, BeWithin(0.1, HIGHEST_YAW)),
+            ("damping", beam.damping, BeWithin(0.0, 1.0)),
+            ("share", beam.share, BeWithin(0.0, 0.5)),
+        ];
+        all("beam", &values)?;
+        if file.plant.motors[..2].contains(&None) {
+            let what = "is between X1 and X2: this machine has not both of them".to_owned();
+            return Err(("beam".to_owned(), what));
+        }
+    }
     if let Some(config) = &file.plant.touch {
         touch(config)?;
     }
@@ -72,6 +107,7 @@ pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
         let [u, v] = mount.beside_spot_mm;
         let key = format!("cameras.{}", number + 1);
         let [least, most] = LEAD_ERROR;
+        let [least_deg, most_deg] = ANGLE_DEG;
         if let Some(lead) = mount.lead_mm {
             all(&key, &[("lead_mm", lead, BePositive)])?;
         }
@@ -82,8 +118,13 @@ pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
                 ("beside_spot_mm", v, BeFinite),
                 ("lead_error_mm", mount.lead_error_mm, BeWithin(least, most)),
                 ("delay_s", mount.delay_s, BeWithin(0.0, CAMERA_DELAY)),
+                ("jitter_s", mount.jitter_s, BeWithin(0.0, CAMERA_DELAY)),
+                ("turned_deg", mount.turned_deg, BeWithin(least_deg, most_deg)),
             ],
         )?;
+        for drift in &mount.drift_mm {
+            growth(&format!("{key}.drift_mm"), drift, BeFinite)?;
+        }
     }
     Ok(())
 }
@@ -177,6 +218,27 @@ fn mechanics(key: &str, mechanics: &MechanicsConfig) -> Result<(), Mistake> {
         )?;
     }
     Ok(())
+}
+
+fn environment(key: &str, environment: &EnvironmentConfig) -> Result<(), Mistake> {
+    growth(&format!("{key}.growth"), &environment.growth, BeFinite)?;
+    let part = BeWithin(-0.01, 0.01);
+    growth(
+        &format!("{key}.grating_growth"),
+        &environment.grating_growth,
+        part,
+    )?;
+    wave(&format!("{key}.floor"), &environment.floor)
+}
+
+fn growth(key: &str, growth: &Growth, amount: Must) -> Result<(), Mistake> {
+    all(
+        key,
+        &[
+            ("amount", growth.amount, amount),
+            ("time_constant_s", growth.time_constant_s, BePositive),
+        ],
+    )
 }
 
 fn wave(key: &str, wave: &Wave) -> Result<(), Mistake> {

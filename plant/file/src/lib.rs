@@ -13,9 +13,12 @@ pub use draw::{Defect, Quality};
 pub use read::PlantFileError;
 pub use shipped::{COMMISSIONED, DEFAULT_MACHINE, names};
 
-use plant::{LONGEST, MotionPlant, PlantConfig, SlidePlant};
+use plant::{AngularErrors, Growth, LONGEST, MotionPlant, PlantConfig, SlidePlant, TrueChain};
 use serde::Deserialize;
-use shared::io::{MOTOR_NAMES, SIDES};
+use shared::config::MotionConfig;
+use shared::io::{AXES, MOTOR_NAMES, SIDES};
+use shared::kinematics::KinematicsConfig;
+use shared::parameter::ParameterError;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -27,6 +30,10 @@ pub struct PlantFile {
     pub plant: PlantConfig,
     /// How the cameras are mounted.
     pub cameras: [CameraMount; SIDES],
+    /// The geometry; that of the machine file if left out.
+    pub kinematics: Option<KinematicsConfig>,
+    /// Angles by which the joints of the axes turn what they carry.
+    pub angular: [AngularErrors; AXES],
 }
 
 /// How a camera is mounted, against what the machine file says.
@@ -46,6 +53,15 @@ pub struct CameraMount {
     /// It exposes so long after its strobe \[s\].
     #[serde(default)]
     pub delay_s: f64,
+    /// Up to so much later than that, another time at each strobe \[s\].
+    #[serde(default)]
+    pub jitter_s: f64,
+    /// It is turned by so much more than believed, about T \[deg\].
+    #[serde(default)]
+    pub turned_deg: f64,
+    /// As it warms, it goes so far beside where it was, in U and V \[mm\].
+    #[serde(default)]
+    pub drift_mm: [Growth; 2],
 }
 
 /// Which plant.
@@ -100,7 +116,17 @@ impl PlantChoice {
     pub fn of(&self, machine: &str) -> Result<PlantFile, PlantFileError> {
         match self {
             Self::Shipped => PlantFile::shipped(machine),
-            Self::File(path) => PlantFile::read(path),
+            Self::File(path) => {
+                let file = PlantFile::read(path)?;
+                match file.kinematics.as_ref().map(KinematicsConfig::name) {
+                    Some(name) if name != machine => Err(PlantFileError::OfAnotherMachine {
+                        path: path.display().to_string(),
+                        name,
+                        machine: machine.to_owned(),
+                    }),
+                    _ => Ok(file),
+                }
+            }
             Self::Drawn { quality, seed } => Ok(draw::around(PlantFile::shipped(machine)?, *quality, *seed)),
         }
     }
@@ -124,6 +150,22 @@ impl PlantFile {
     /// The slides.
     pub fn slides(&self) -> SlidePlant {
         SlidePlant::new(&self.plant)
+    }
+
+    /// Where the tool truly is, on a machine whose controller believes `motion`.
+    ///
+    /// # Errors
+    /// The geometry is one of another machine, or none.
+    pub fn chain(&self, motion: &MotionConfig) -> Result<TrueChain, ParameterError> {
+        let truly = MotionConfig {
+            kinematics: self
+                .kinematics
+                .clone()
+                .unwrap_or_else(|| motion.kinematics.clone()),
+            ..motion.clone()
+        };
+        let joints = (0..AXES).filter_map(|number| truly.kinematics.joint(number));
+        Ok(TrueChain::new(truly.kinematics()?, joints, self.angular))
     }
 
     /// The plant as an emulated board reads it.

@@ -2,9 +2,13 @@
 
 use crate::{CameraMount, PlantFile, check};
 use config::toml_file::{self, TomlError};
-use plant::{ERRORS, GeometryConfig, MotorConfig, PlantConfig, SlideConfig, TouchConfig, Wave};
+use plant::{
+    AngularError, AngularErrors, BeamConfig, ERRORS, GeometryConfig, MotorConfig, PlantConfig, SlideConfig,
+    TouchConfig, Wave,
+};
 use serde::Deserialize;
-use shared::io::{AXIS_NAMES, MOTOR_NAMES, SLIDE_NAMES, is_called};
+use shared::io::{AXES, AXIS_NAMES, MOTOR_NAMES, SLIDE_NAMES, is_called};
+use shared::kinematics::KinematicsConfig;
 use std::collections::BTreeMap;
 use std::path::Path;
 use thiserror::Error;
@@ -28,6 +32,16 @@ pub enum PlantFileError {
         key: String,
         /// What is wrong with it.
         what: String,
+    },
+    /// Its geometry is that of another machine.
+    #[error("plant file {path}: kinematics.{name} is not the geometry of the machine, which is a {machine}")]
+    OfAnotherMachine {
+        /// The file.
+        path: String,
+        /// What it has.
+        name: &'static str,
+        /// What it must have.
+        machine: String,
     },
     /// No machine is called so.
     #[error(
@@ -56,7 +70,12 @@ struct Document {
     /// By what is beside its place, and by the axis along which it is.
     #[serde(default)]
     geometry: BTreeMap<String, BTreeMap<String, GeometryError>>,
+    beam: Option<BeamConfig>,
     touch: Option<TouchConfig>,
+    kinematics: Option<KinematicsConfig>,
+    /// By the axis about which a joint turns, and by its own.
+    #[serde(default)]
+    angular: BTreeMap<String, BTreeMap<String, AngularError>>,
 }
 
 /// An error of geometry.
@@ -72,6 +91,9 @@ struct GeometryError {
 fn first() -> u32 {
     1
 }
+
+/// Turns about x, y and z as files call them.
+pub(crate) const ABOUT: [&str; 3] = ["A", "B", "C"];
 
 /// Sides as files call them.
 const CAMERA_NAMES: [&str; 2] = ["1", "2"];
@@ -106,10 +128,13 @@ impl PlantFile {
                 motors,
                 slides,
                 geometry: geometry.into_iter().collect(),
+                beam: document.beam,
                 touch: document.touch,
                 seed: document.seed,
             },
             cameras: cameras.map(Option::unwrap_or_default),
+            kinematics: document.kinematics,
+            angular: angular(document.angular).map_err(mistake)?,
         };
         check::plant(&plant).map_err(mistake)?;
         Ok(plant)
@@ -162,6 +187,27 @@ fn geometry(
     if all.len() > ERRORS {
         let what = format!("are {}, at most {ERRORS} may be, one for each motor", all.len());
         return Err(("geometry".to_owned(), what));
+    }
+    Ok(all)
+}
+
+/// Angular errors by axes. They are called as in ISO 230-1: `A.X` is roll of X.
+fn angular(
+    errors: BTreeMap<String, BTreeMap<String, AngularError>>,
+) -> Result<[AngularErrors; AXES], Mistake> {
+    let mut all = [AngularErrors::default(); AXES];
+    for (about, by_axis) in errors {
+        for (along, error) in by_axis {
+            let place = ABOUT.iter().position(|name| *name == about);
+            let axis = AXIS_NAMES.iter().position(|name| *name == along);
+            let (Some(about), Some(axis)) = (place, axis) else {
+                return Err((
+                    format!("angular.{about}.{along}"),
+                    "is not known: A, B or C turn, along X, Y, Z, A, B or C".to_owned(),
+                ));
+            };
+            all[axis][about] = error;
+        }
     }
     Ok(all)
 }

@@ -34,9 +34,9 @@ pub struct AcHeadConfig {
 }
 
 impl AcHeadConfig {
-    /// Which of X Y Z A B C the machine has.
-    pub fn fitted(&self) -> [bool; AXES] {
-        [true, true, true, true, false, true]
+    /// Axis of its joint of this number, from the work to the tool.
+    pub fn joint(&self, number: usize) -> Option<usize> {
+        [0, 1, 2, C, A].get(number).copied()
     }
 
     /// Checks the geometry: every number one of a machine, and the focus below the A axis. The travel of A and C in `limits`

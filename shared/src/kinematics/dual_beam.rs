@@ -29,9 +29,9 @@ pub struct DualBeamConfig {
 }
 
 impl DualBeamConfig {
-    /// Which of X Y Z A B C the machine has.
-    pub fn fitted(&self) -> [bool; AXES] {
-        [true; AXES]
+    /// Axis of its joint of this number, from the work to the tool.
+    pub fn joint(&self, number: usize) -> Option<usize> {
+        [0, 1, 2, 5, 4, 3].get(number).copied()
     }
 
     /// Checks the geometry: every number one of a machine, and the tip below the A axis. The solution is unique within

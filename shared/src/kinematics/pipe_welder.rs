@@ -31,9 +31,9 @@ pub struct PipeWelderConfig {
 }
 
 impl PipeWelderConfig {
-    /// Which of X Y Z A B C the machine has.
-    pub fn fitted(&self) -> [bool; AXES] {
-        [true, false, true, false, true, true]
+    /// Axis of its joint of this number, from the work to the tool.
+    pub fn joint(&self, number: usize) -> Option<usize> {
+        [C, 0, 2, B].get(number).copied()
     }
 
     /// Checks the geometry. There is no branch to choose, so the limits of the axes do not matter.

@@ -21,11 +21,20 @@ macro_rules! machines {
                 }
             }
 
+            /// Axis of its joint of this number, from the work to the tool.
+            pub fn joint(&self, number: usize) -> Option<usize> {
+                match self {
+                    $(Self::$name(config) => config.joint(number),)+
+                }
+            }
+
             /// Which of X Y Z A B C the machine has.
             pub fn fitted(&self) -> [bool; AXES] {
-                match self {
-                    $(Self::$name(config) => config.fitted(),)+
+                let mut fitted = [false; AXES];
+                for axis in (0..AXES).filter_map(|number| self.joint(number)) {
+                    fitted[axis] = true;
                 }
+                fitted
             }
 
             /// Checks the geometry; `limits` are those of the axes, for machines whose branch depends on them.

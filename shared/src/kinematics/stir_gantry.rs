@@ -45,9 +45,9 @@ pub enum StirTilt {
 }
 
 impl StirGantryConfig {
-    /// Which of X Y Z A B C the machine has.
-    pub fn fitted(&self) -> [bool; AXES] {
-        [true, true, true, false, true, true]
+    /// Axis of its joint of this number, from the work to the tool.
+    pub fn joint(&self, number: usize) -> Option<usize> {
+        [0, 1, 2, C, B].get(number).copied()
     }
 
     /// Checks the geometry: the pin hangs. The travel of B in `limits` decides which tilts there are.

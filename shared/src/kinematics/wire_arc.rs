@@ -57,9 +57,9 @@ pub struct WireArcConfig {
 }
 
 impl WireArcConfig {
-    /// Which of X Y Z A B C the machine has.
-    pub fn fitted(&self) -> [bool; AXES] {
-        [true; AXES]
+    /// Axis of its joint of this number, from the work to the tool.
+    pub fn joint(&self, number: usize) -> Option<usize> {
+        [C, 4, 0, 1, 2, 3].get(number).copied()
     }
 
     /// Checks the geometry: every number one of a machine, and the wire below the A axis. The solution is unique but for

@@ -211,6 +211,22 @@ fn gantry(tangent: Option<[f64; 3]>) -> Machine {
     built(config, [travel, travel, travel, None, None, None])
 }
 
+/// A table that tilts (B) and turns (C), under a gantry whose torch tilts (A); in the file in another order.
+#[test]
+fn joints_are_told_from_the_work_to_the_tool() {
+    let joints = [
+        (JointAxis::X, Carried::Tool, X_AXIS, [0.0; 3]),
+        (JointAxis::B, Carried::Work, Y_AXIS, [0.0; 3]),
+        (JointAxis::Z, Carried::Tool, Z_AXIS, [0.0; 3]),
+        (JointAxis::C, Carried::Work, Z_AXIS, [0.0; 3]),
+        (JointAxis::A, Carried::Tool, X_AXIS, [0.0; 3]),
+    ];
+    let config = KinematicsConfig::SerialChain(chain_of(&joints, [0.0; 3], Z_AXIS));
+    let order: Vec<usize> = (0..AXES).filter_map(|number| config.joint(number)).collect();
+    assert_eq!(order, [5, 4, 0, 2, 3]);
+    assert_eq!(config.fitted(), [true, false, true, true, true, true]);
+}
+
 /// Signs, by hand: the table carries the work along +Y, so the tip goes along −Y over it.
 #[test]
 fn three_linear_axes_lead_the_tip_and_keep_the_attitude() {

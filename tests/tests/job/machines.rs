@@ -60,6 +60,42 @@ fn a_machine_without_a_tracker_needs_the_motion_board_only() {
     assert_eq!(ended.evaluation.ticks.iter().last().unwrap().slides_mm, None);
 }
 
+/// A head that hangs 0.2 mm lower than believed, and a beam that is rolled by 0.01° about X, with the tip 900 mm along Y and 100 mm
+/// up: no grating sees anything of it.
+#[test]
+fn the_report_tells_where_the_tool_truly_was() {
+    let shipped = include_str!("../../../machines/dual-beam-gantry.plant.toml");
+    let beside_path = |more: &str| {
+        let plant = PlantFile::parse("my.plant.toml", &format!("{shipped}\n{more}")).unwrap();
+        let (machine, program) = (
+            without_tracker(),
+            interpret(&untracked(), Options::default()).unwrap(),
+        );
+        let mut job = job(&machine, &program, None);
+        job.surroundings = Surroundings {
+            truth: TrueMachine::new(&plant, &machine).unwrap(),
+            ..around(None)
+        }
+        .into();
+        let ended = run(&mut SimulatedBoards::default(), &job, &mut NoOperator).unwrap();
+        assert!(ended.error.is_none(), "{:?}", ended.error);
+        ended.report.max_contour_error_mm.unwrap()
+    };
+    let lower = "[kinematics.dual-beam-gantry]
+        o1_mm = [0.0, 0.0, -120.0]
+        o2_mm = [0.0, 0.0, -80.0]
+        o3_mm = [0.0, 0.0, -450.2]";
+    let rolled = "[angular.A.X]\nconstant = 0.01";
+    let arm = 0.01_f64.to_radians() * 900.0_f64.hypot(100.0);
+    for (more, expected) in [("", 0.0), (lower, 0.2), (rolled, arm)] {
+        let seen = beside_path(more);
+        assert!(
+            (seen - expected).abs() < 0.0015,
+            "{more}: {seen} mm, {expected} expected"
+        );
+    }
+}
+
 #[test]
 fn a_seam_is_asked_for_where_the_program_tracks_and_refused_where_the_machine_cannot() {
     let refused = |machine: &MachineFile, program: &str, seam: Option<Arc<Deviation>>| {

@@ -28,6 +28,7 @@ use host_link::pass_on;
 use host_link::{Command, Remote};
 use job::{Job, JobError, Names, Work};
 use nc::{Options, Program, interpret};
+use plant_file::PlantFile;
 use report::{Ended, Outcome, Report, SeamFigures};
 use shared::protocol::{Datagram, Identity, Request, Response, Role};
 use shared::state::{State, TrackerFault, TrackerState};
@@ -35,7 +36,7 @@ use std::sync::Arc;
 use std::time::Duration;
 use system_tests::{NoOperator, Operator, TappedBoards, run};
 use world::simulated::SimulatedBoards;
-use world::{Deviation, SeamError, Surroundings, check_seam};
+use world::{Deviation, SeamError, Surroundings, TrueMachine, check_seam};
 
 const PROGRAM: &str = "\
 G43.4

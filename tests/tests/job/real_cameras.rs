@@ -254,6 +254,7 @@ impl World {
                     side,
                     slides_mm: [slides[2 * side], slides[2 * side + 1]],
                     lead_mm: self.seams.heads().camera_lead(),
+                    turned: 0.0,
                 };
                 let view = View::of(cameras, &self.machine, &self.seams, None, &position, &standpoint);
                 let field_of_view = view.map_or(FieldOfView::Nothing, FieldOfView::Seam);

@@ -233,7 +233,8 @@ impl Images {
     fn tell(&mut self, at: Moment) {
         for (k, side) in self.sides.iter_mut().enumerate() {
             for waiting in side.waiting.iter_mut().filter(|waiting| !waiting.told) {
-                let position = (at.position)(waiting.strobe_us + self.source.delay_us(k));
+                let position =
+                    (at.position)(waiting.strobe_us + self.source.delay_us(waiting.capture.number, k));
                 if position.is_none() {
                     if at.now_us <= waiting.due_us + GIVE_UP_US {
                         break;

@@ -9,16 +9,15 @@ use emulator::PLANT_VARIABLE;
 use host_link::events::Interest;
 use host_link::{Command, Remote, control};
 use job::{Job, JobError, Names, Work, run};
-use plant_file::{CameraMount, PlantChoice, PlantFileError};
+use plant_file::PlantChoice;
 use report::{Ended, LogColumns, LogWriter, ended};
-use shared::io::SIDES;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
-use world::{BoardChoice, BoardsError, Surroundings};
+use world::{BoardChoice, BoardsError, Surroundings, TrueMachine};
 
 /// Exit code after Ctrl-C, as shells have it; after SIGTERM and SIGHUP, which are treated alike, too.
 const INTERRUPTED: u8 = 130;
@@ -142,11 +141,14 @@ impl BoardArgs {
         }
     }
 
-    /// How the cameras of a simulated machine are mounted.
-    pub fn mounts(&self, machine: &MachineFile) -> Result<[CameraMount; SIDES], PlantFileError> {
+    /// How a simulated machine truly is, whatever its file says.
+    pub fn truth(&self, machine: &MachineFile) -> anyhow::Result<TrueMachine> {
         match self.choice {
-            BoardChoice::At { .. } => Ok(Default::default()),
-            _ => Ok(self.plant().of(machine.motion.kinematics.name())?.cameras),
+            BoardChoice::At { .. } => Ok(TrueMachine::default()),
+            _ => {
+                let plant = self.plant().of(machine.motion.kinematics.name())?;
+                TrueMachine::new(&plant, machine).with_context(|| format!("plant file {}", self.plant()))
+            }
         }
     }
 

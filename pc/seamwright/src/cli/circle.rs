@@ -11,7 +11,6 @@ use clap::{Args, ValueEnum};
 use commission::{REVERSALS_DEG, TurnFigures, bidirectional_mm};
 use config::machine::MachineFile;
 use emulator::MACHINE_VARIABLE;
-use host_link::geometry::MachineGeometry;
 use job::{CircularTest, NoCircle, Plane, SeenCircle, Work};
 use report::write_circle;
 use std::path::PathBuf;
@@ -108,7 +107,7 @@ impl Circle {
         if ended.error.is_some() {
             return exit_code(ended.error);
         }
-        let geometry = MachineGeometry::build(&machine.motion)?;
+        let geometry = self.boards.truth(&machine)?.geometry(&machine.motion)?;
         self.judge(test, &circle.seen(&geometry, &ended.record)?)
     }
 

@@ -84,6 +84,7 @@ impl Teach {
             from_line: None,
             surroundings: Surroundings {
                 seed: self.seed,
+                truth: self.boards.truth(&machine)?,
                 ..Surroundings::default()
             }
             .into(),

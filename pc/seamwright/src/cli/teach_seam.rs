@@ -141,7 +141,7 @@ impl SeamArgs {
                 drawing: drawn.map(Arc::new),
                 cameras,
                 seed,
-                mounts: boards.mounts(machine)?,
+                truth: boards.truth(machine)?,
                 work: Workpiece::Seams,
             }
             .into(),

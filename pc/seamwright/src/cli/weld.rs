@@ -138,7 +138,7 @@ impl Weld {
                 drawing: drawing.map(Arc::new),
                 cameras: cameras.clone(),
                 seed: self.seed,
-                mounts: self.boards.mounts(&machine)?,
+                truth: self.boards.truth(&machine)?,
                 work: Workpiece::Seams,
             }
             .into(),

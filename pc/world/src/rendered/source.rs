@@ -66,8 +66,8 @@ impl PictureSource for RenderedPictures {
         self.world.late_us(capture, side)
     }
 
-    fn delay_us(&self, side: usize) -> u64 {
-        self.mounts[side].delay_us()
+    fn delay_us(&self, capture: u32, side: usize) -> u64 {
+        self.mounts[side].delay_us(capture)
     }
 
     fn motion(&mut self, samples: &[MotionSample]) {
@@ -87,6 +87,7 @@ impl PictureSource for RenderedPictures {
             side,
             slides_mm: self.mounts[side].slides_mm(side, capture),
             lead_mm: self.mounts[side].lead_mm(self.believed_lead_mm),
+            turned: self.mounts[side].turned(),
         };
         let field_of_view = match at {
             Some((machine, position)) => {

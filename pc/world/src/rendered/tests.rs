@@ -41,6 +41,7 @@ fn standpoint(slides: &[f64; SLIDES], side: usize) -> Standpoint {
     Standpoint {
         side,
         slides_mm: [slides[2 * side], slides[2 * side + 1]],
+        turned: 0.0,
         lead_mm: heads().camera_lead(),
     }
 }
@@ -133,6 +134,41 @@ fn what_is_measured_in_rendered_pictures_is_where_the_seam_truly_is() {
                 assert!(sum[0].abs() < 0.005 && sum[1].abs() < 0.015, "{at}");
             }
         }
+    }
+}
+
+#[test]
+fn a_camera_that_is_turned_sees_the_seam_turned_about_its_way() {
+    let (machine, seams) = (machine(), TrueSeams::of([wavy_seam()]));
+    let cameras = cameras(JointForm::Gap, -30.0);
+    for side in 0..SIDES {
+        let (position, slides) = standing(&seams, 250.0, [0.1, -0.05]);
+        let seen = |turned: f64| {
+            let standpoint = Standpoint {
+                turned,
+                ..standpoint(&slides, side)
+            };
+            let view = View::of(&cameras, &machine, &seams, None, &position, &standpoint).unwrap();
+            let ViewForm::Plate { roll, .. } = view.form else {
+                panic!("a gap is in a plate");
+            };
+            ([view.lateral_mm, view.height_mm], roll.atan())
+        };
+        let turn = 0.02;
+        let (([u, n], roll), ([turned_u, turned_n], turned_roll)) = (seen(0.0), seen(turn));
+        let (sin, cos) = turn.sin_cos();
+        assert!(
+            (turned_u - (u * cos + n * sin)).abs() < 1e-9,
+            "{side}: {turned_u}"
+        );
+        assert!(
+            (turned_n - (n * cos - u * sin)).abs() < 1e-9,
+            "{side}: {turned_n}"
+        );
+        assert!(
+            (turned_roll - roll + turn).abs() < 2e-3,
+            "{side}: {turned_roll} {roll}"
+        );
     }
 }
 

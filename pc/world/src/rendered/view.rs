@@ -63,6 +63,8 @@ pub struct Standpoint {
     pub slides_mm: [f64; 2],
     /// How far ahead of the spot \[mm\].
     pub lead_mm: f64,
+    /// How much further it is turned about T than the machine file says \[rad\].
+    pub turned: f64,
 }
 
 impl View {
@@ -78,7 +80,7 @@ impl View {
     ) -> Option<Self> {
         let (heads, side) = (seams.heads(), at.side);
         let spot = heads.spot(&machine.pose(position), side);
-        let mount = cameras.mount_deg[side].to_radians();
+        let mount = cameras.mount_deg[side].to_radians() + at.turned;
         let lead = at.lead_mm;
         let ahead = [lead, cameras.focus_above_mm()];
         let frame = CameraFrame::new(&spot, mount, ahead, at.slides_mm[0], at.slides_mm[1]);

@@ -73,13 +73,29 @@ pub enum Carried {
 }
 
 impl SerialChainConfig {
-    /// The axes that have a joint.
-    pub fn fitted(&self) -> [bool; AXES] {
-        let mut fitted = [false; AXES];
-        for joint in &self.joints {
-            fitted[joint.axis as usize] = true;
+    /// Axis of its joint of this number, from the work to the tool.
+    pub fn joint(&self, number: usize) -> Option<usize> {
+        let joints = self.in_order();
+        joints.get(number).map(|joint| joint.axis as usize)
+    }
+
+    /// The joints from the work to the tool: what carries the work comes first, the other way round.
+    #[cold]
+    #[inline(never)]
+    fn in_order(&self) -> Vec<&JointConfig, AXES> {
+        let mut ordered = Vec::new();
+        let count = self.joints.len();
+        for place in 0..2 * count {
+            let (carried, joint) = match place.checked_sub(count) {
+                None => (Carried::Work, &self.joints[count - 1 - place]),
+                Some(place) => (Carried::Tool, &self.joints[place]),
+            };
+            if joint.carries == carried {
+                // Each is there once.
+                let _ = ordered.push(joint);
+            }
         }
-        fitted
+        ordered
     }
 
     /// Checks the geometry: at least one joint, none twice, directions of unit length, every number one of a machine. Of two
@@ -105,18 +121,9 @@ impl SerialChainConfig {
             normal,
         };
 
-        // From the work to the tool: what carries the work the other way round.
         let mut joints: Vec<Joint, AXES> = Vec::new();
         let mut rotary: Vec<u8, 3> = Vec::new();
-        let count = self.joints.len();
-        for place in 0..2 * count {
-            let (carried, config) = match place.checked_sub(count) {
-                None => (Carried::Work, &self.joints[count - 1 - place]),
-                Some(place) => (Carried::Tool, &self.joints[place]),
-            };
-            if config.carries != carried {
-                continue;
-            }
+        for config in self.in_order() {
             let joint = config.build(&work, limits)?;
             let twice = joints.iter().any(|other| other.axis == joint.axis);
             sensible(!twice, AXIS_OWNERS[joint.axis], "joints", 2.0)?;

@@ -60,7 +60,7 @@ impl OnMachine<'_> {
                 drawing: None,
                 cameras: CameraChoice::Images(Box::new(images), source),
                 seed: self.coupon.seed,
-                mounts: self.boards.mounts(self.machine)?,
+                truth: self.boards.truth(self.machine)?,
                 work: workpiece,
             }
             .into(),

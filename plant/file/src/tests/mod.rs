@@ -1,12 +1,14 @@
 //! Plant files: the shipped ones, drawn ones, and wrong ones.
 
+mod chain;
+
 use super::*;
 use plant::LONGEST;
 use std::collections::BTreeSet;
 
 /// The shipped plant of the default machine with `by` in place of every `line`.
 fn with(line: &str, by: &str) -> Result<PlantFile, PlantFileError> {
-    let text = include_str!("../../../machines/dual-beam-gantry.plant.toml");
+    let text = include_str!("../../../../machines/dual-beam-gantry.plant.toml");
     assert!(text.contains(line), "{line}");
     PlantFile::parse("my.plant.toml", &text.replace(line, by))
 }
@@ -42,6 +44,27 @@ fn the_largest_plant_fits() {
         };
         while motor.mechanics.modes.push(mode).is_ok() {}
     }
+    let geometry = plant::GeometryConfig {
+        motor: 6,
+        axis: 5,
+        slope: 1.0,
+        wave: plant::Wave::default(),
+    };
+    while file.plant.geometry.push(geometry.clone()).is_ok() {}
+    let mut bodies = heapless::Vec::new();
+    while bodies
+        .push(plant::BodyConfig {
+            from: [0.0; 3],
+            to: [1.0; 3],
+        })
+        .is_ok()
+    {}
+    file.plant.touch = Some(plant::TouchConfig { input: 4, bodies });
+    file.plant.beam = Some(plant::BeamConfig {
+        yaw_hz: 20.0,
+        damping: 0.1,
+        share: 0.1,
+    });
     file.plant.seed = u32::MAX;
     let length = file.encode().len();
     assert!((1..LONGEST).contains(&length), "{length}");
@@ -132,6 +155,36 @@ fn mistakes_are_named_with_file_line_and_value() {
             "[geometry.Z.X]\nslope = 0.5\n[slides.U1]",
             "geometry.Z.X.slope = 0.5 must be from -0.01 to 0.01",
         ),
+        (
+            "[slides.U1]",
+            "[angular.X.A]\nconstant = 0.01\n[slides.U1]",
+            "angular.X.A is not known: A, B or C turn, along X, Y, Z, A, B or C",
+        ),
+        (
+            "[slides.U1]",
+            "[angular.C.X]\nconstant = 3.0\n[slides.U1]",
+            "angular.C.X.constant = 3 must be from -2 to 2",
+        ),
+        (
+            "[slides.U1]",
+            "[kinematics.dual-beam-gantry]\no1_mm = [0.0, 0.0, -120.0]\n[slides.U1]",
+            "missing field `o2_mm`",
+        ),
+        (
+            "[slides.U1]",
+            "[beam]\nyaw_hz = 300.0\ndamping = 0.05\n[slides.U1]",
+            "beam.yaw_hz = 300 must be from 0.1 to 100",
+        ),
+        (
+            "[motors.X2.drive]",
+            "[motors.X2.environment]\ngrowth = { amount = 0.01, time_constant_s = 0.0 }\n[motors.X2.drive]",
+            "motors.X2.environment.growth.time_constant_s = 0 must be greater than 0",
+        ),
+        (
+            "[slides.U1]",
+            "[cameras.1]\ndrift_mm = [{ amount = 0.01, time_constant_s = 60.0 }, { amount = 0.01, time_constant_s = -3.0 }]\n[slides.U1]",
+            "cameras.1.drift_mm.time_constant_s = -3 must be greater than 0",
+        ),
     ] {
         let error = with(line, by).expect_err(by).to_string();
         assert!(
@@ -205,4 +258,27 @@ fn errors_of_geometry_of_an_axis_are_those_of_all_its_motors() {
         .map(|error| (error.motor, error.axis, error.slope, error.wave.amplitude))
         .collect();
     assert_eq!(errors, [(0, 0, 0.0, 0.01), (1, 0, 0.0, 0.01), (3, 0, 2e-5, 0.0)]);
+}
+
+#[test]
+fn a_beam_needs_both_motors_and_a_geometry_its_machine() {
+    let text = include_str!("../../../../machines/stir-gantry.plant.toml");
+    let beam = format!("{text}\n[beam]\nyaw_hz = 20.0\ndamping = 0.05\n");
+    let error = PlantFile::parse("my.plant.toml", &beam).unwrap_err().to_string();
+    assert!(
+        error.contains("beam is between X1 and X2: this machine has not both"),
+        "{error}"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("my.plant.toml");
+    std::fs::write(
+        &file,
+        format!("{text}\n[kinematics.pipe-welder]\ntorch_mm = 60.0\n"),
+    )
+    .unwrap();
+    let error = PlantChoice::File(file).of("stir-gantry").unwrap_err().to_string();
+    assert!(
+        error.contains("kinematics.pipe-welder is not the geometry of the machine, which is a stir-gantry"),
+        "{error}"
+    );
 }
