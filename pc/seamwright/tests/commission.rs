@@ -181,6 +181,32 @@ fn a_machine_that_resonates_at_80_or_40_hz_welds_when_it_is_commissioned() {
     }
 }
 
+/// Shaken at one end only, a beam as stiff as that answered as if it had play.
+#[test]
+fn a_gantry_with_a_stiff_beam_welds_when_it_is_commissioned() {
+    let folder = tempdir().expect("a folder");
+    let [plant, machine, report] =
+        ["beam.plant.toml", "machine.toml", "report"].map(|name| folder.path().join(name));
+    let shipped_plant =
+        std::fs::read_to_string(shipped("machines/dual-beam-gantry.plant.toml")).expect("a plant");
+    let beam = "[beam]\nyaw_hz = 40.0\ndamping = 0.03\nshare = 0.2\n";
+    std::fs::write(&plant, format!("{shipped_plant}\n{beam}")).expect("it is written");
+    let [wired, into] = [&plant, &machine].map(|path| path.to_str().expect("a path"));
+    let told = commission(
+        &shipped("machines/dual-beam-gantry.toml"),
+        &["--plant", wired, "--motors", "X1,X2", "-o", into],
+    );
+    assert_eq!(
+        told.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&told.stderr)
+    );
+    let welded = weld_on(wired, &machine, &report);
+    let said = String::from_utf8_lossy(&welded.stderr);
+    assert_eq!(welded.status.code(), Some(0), "{said}");
+}
+
 #[test]
 fn a_drive_that_is_connected_the_wrong_way_round_is_named() {
     let folder = tempdir().expect("a folder");

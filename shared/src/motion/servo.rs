@@ -568,7 +568,7 @@ impl ServoLoops {
             let counts = self.last_counts.map_or(0, |counts| counts[motor]);
             aside = self.exciting.aside(counts, pitch, added);
             if self.exciting.allows(aside, pitch, told, &mut report.excitation) {
-                output[motor] = told;
+                added.add_to(&mut output);
             }
         }
         let mut command = MotionCommand {

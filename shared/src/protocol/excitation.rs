@@ -10,10 +10,10 @@ pub const CAPTURE_TICKS: usize = 2048;
 /// Most samples in one [`CapturePart`].
 pub const CAPTURE_PART: usize = 64;
 
-/// A chirp (linear, periodic in [`CAPTURE_TICKS`]) for one motor, whose last period is captured.
+/// A chirp (linear, periodic in [`CAPTURE_TICKS`]) for all motors of an axis alike, of which the last period of one is captured.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct Excitation {
-    /// Index of the motor.
+    /// Index of the motor that is captured.
     pub motor: u8,
     /// What the chirp is added to.
     pub excited: Excited,
@@ -39,7 +39,7 @@ pub struct Excitation {
 pub enum Excited {
     /// The command to the drive, behind the position loop.
     Command,
-    /// The reference of the position loop, without feed-forward; of all motors of the axis alike.
+    /// The reference of the position loop, without feed-forward.
     Reference,
 }
 

@@ -273,9 +273,9 @@ fn nothing_else_moves_meanwhile_and_it_needs_a_machine_at_rest() {
     );
 }
 
-/// So that a gantry turns round as it does on a path; what one of its drives answers is measured beside the other.
+/// So that a gantry turns round as it does on a path, and its beam is not racked.
 #[test]
-fn a_reference_moves_both_motors_of_a_gantry_and_a_command_only_its_own() {
+fn both_motors_of_a_gantry_are_excited_alike() {
     let [x1, x2] = [0, 1];
     for (excited, amplitude) in [(Excited::Reference, 0.8), (Excited::Command, 10.0)] {
         let mut bench = bench();
@@ -299,13 +299,10 @@ fn a_reference_moves_both_motors_of_a_gantry_and_a_command_only_its_own() {
         assert_eq!(bench.fault(), None, "{excited:?}");
         // The skew trips at 0.3 mm.
         assert!(farthest[x1] > 0.05, "{excited:?}: {farthest:?}");
-        match excited {
-            Excited::Reference => {
-                assert!((farthest[x1] - farthest[x2]).abs() < 2e-3, "{farthest:?}");
-                assert!(farthest[x1] > 0.5, "{farthest:?}");
-            }
-            Excited::Command => assert!(farthest[x2] < 0.5 * farthest[x1], "{farthest:?}"),
-        }
+        assert!(
+            (farthest[x1] - farthest[x2]).abs() < 0.1 * farthest[x1],
+            "{excited:?}: {farthest:?}"
+        );
     }
 }
 

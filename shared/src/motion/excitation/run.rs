@@ -1,7 +1,7 @@
 //! An excitation in the servo ticks: the chirp and the way, the limits that end it, and its samples.
 
 use super::order::ExcitationOrder;
-use crate::io::MOTOR_AXIS;
+use crate::io::{MOTOR_AXIS, MOTORS};
 use crate::protocol::{CAPTURE_TICKS, CaptureSample, ExcitationEnd};
 use crate::ticks::SERVO_TICKS_PER_PATH_TICK;
 
@@ -63,7 +63,7 @@ pub struct Added {
     /// To the places of all motors of the axis, and to their speed on the way, which is fed forward.
     pub place: f64,
     pub velocity: f64,
-    /// To the command of the one that is measured.
+    /// To their commands: a beam that is shaken at one end only is racked, and what is measured is the beam.
     pub command: f64,
     /// Place on the way.
     way: f64,
@@ -90,14 +90,31 @@ impl Running {
 }
 
 impl Added {
+    /// Whether it is for this motor.
+    fn is_for(&self, motor: usize) -> bool {
+        MOTOR_AXIS[motor] == MOTOR_AXIS[self.motor]
+    }
+
     /// To the position and the speed of a motor.
     #[cold]
     #[inline(never)]
     pub fn to(&self, motor: usize) -> (f64, f64) {
-        if MOTOR_AXIS[motor] != MOTOR_AXIS[self.motor] {
-            return (0.0, 0.0);
+        if self.is_for(motor) {
+            (self.place, self.velocity)
+        } else {
+            (0.0, 0.0)
         }
-        (self.place, self.velocity)
+    }
+
+    /// To the commands of all motors.
+    #[cold]
+    #[inline(never)]
+    pub fn add_to(&self, commands: &mut [f64; MOTORS]) {
+        for (motor, command) in commands.iter_mut().enumerate() {
+            if self.is_for(motor) {
+                *command += self.command;
+            }
+        }
     }
 }
 
