@@ -11,6 +11,7 @@
 //!
 //! No model of the mechanics is assumed: margins are those of the controller as it is built and the response as it was measured.
 
+mod arms;
 mod bode;
 mod circle;
 mod controller;
@@ -27,6 +28,7 @@ mod refusal;
 mod response;
 mod stopped;
 
+pub use arms::{Arm, Arms, NoArms, SeenTip, arms};
 pub use bode::Bode;
 pub use circle::{REVERSALS_DEG, Turn, TurnFigures, bidirectional_mm};
 pub use design::{Loop, NoDesign, Requirements, design};
@@ -34,7 +36,7 @@ pub use excitations::{CapturedMotion, excitations, softened};
 pub use found::{Found, NotFound, measured, swinging};
 pub use friction::{NoFriction, friction};
 pub use lag::Lag;
-pub use machine_file::{WriteError, rewrite, rewrite_all, rewrite_deviation};
+pub use machine_file::{WriteError, rewrite, rewrite_all, rewrite_arms, rewrite_deviation};
 pub use margins::Margins;
 pub use plan::{Planned, SETTLE_PERIODS, TRAVEL, TURNS_HZ, WAY, plan, plan_at_rest, swing, turns, way};
 pub use positioning::{Approach, NoPositioning, Positioning, PositioningFigures, Target};

@@ -1,6 +1,7 @@
 //! Loops in a machine file: values are replaced, everything else stays as it was written, and what was there before is told
 //! beside them.
 
+use crate::arms::Arm;
 use crate::design::Loop;
 use crate::excitations::least_kp;
 use crate::four_digits;
@@ -23,6 +24,9 @@ pub enum WriteError {
     /// Something else is called so.
     #[error("its {0} is no table")]
     NoTable(String),
+    /// Lengths of joints.
+    #[error("its joints are a list: write what was found into it by hand")]
+    Joints,
     /// There is no gantry in it.
     #[error("it has no table [gantry]")]
     NoGantry,
@@ -154,6 +158,37 @@ pub fn rewrite_deviation(
     replace(table, "from", deviation.from.into());
     replace(table, "step", deviation.step.into());
     replace(table, "values", values.into());
+    Ok(document.to_string())
+}
+
+/// The machine file `text` with these lengths of the machine that is called `name`, to 0.1 µm.
+///
+/// # Errors
+/// It is no machine file of that machine, or its lengths are those of joints, which are in a list.
+pub fn rewrite_arms(text: &str, name: &str, arms: &[Arm]) -> Result<String, WriteError> {
+    let mut document: DocumentMut = text.parse()?;
+    let table = document
+        .get_mut("kinematics")
+        .and_then(|kinematics| kinematics.get_mut(name))
+        .and_then(Item::as_table_mut)
+        .ok_or_else(|| WriteError::NoTable(format!("kinematics.{name}")))?;
+    for arm in arms {
+        let (key, index) = arm.place().ok_or(WriteError::Joints)?;
+        let found = (arm.found_mm * 1e4).round() / 1e4;
+        let Some(index) = index else {
+            replace(table, key, found.into());
+            continue;
+        };
+        let mut values: Array = arms
+            .iter()
+            .filter(|other| other.place().is_some_and(|(of, _)| of == key))
+            .map(|other| (other.found_mm * 1e4).round() / 1e4)
+            .collect();
+        if index == 0 {
+            values.fmt();
+            replace(table, key, values.into());
+        }
+    }
     Ok(document.to_string())
 }
 

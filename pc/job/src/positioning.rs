@@ -1,5 +1,6 @@
 //! A test of positioning accuracy: an axis goes to targets from both sides and rests at each (ISO 230-2).
 
+use crate::rests::{NotSeen, rests};
 use cam::path::{PathError, Planner};
 use config::machine::MachineFile;
 use host_link::geometry::MachineGeometry;
@@ -7,6 +8,7 @@ use host_link::record::{MachinePosition, Recorded};
 use nc::{NcError, Options, Program, interpret};
 use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTORS};
 use shared::kinematics::AXIS_UNIT;
+use shared::protocol::MotionSample;
 use std::fmt::Write;
 use std::sync::Arc;
 use thiserror::Error;
@@ -17,8 +19,6 @@ const ROOM: f64 = 5.0;
 const BEYOND: f64 = 2.0;
 /// At a target, where the board sees the axis so near to it (mm or degrees).
 const THERE: f64 = 0.05;
-/// Part of a rest that is not counted, in which the axis settles.
-const SETTLING: f64 = 0.5;
 
 /// What to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,16 +64,6 @@ pub enum NoTest {
     /// The machine cannot follow it.
     #[error(transparent)]
     Path(#[from] PathError),
-}
-
-/// A test whose rests are not all in the record.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("the axis was seen at {seen} of {wanted} targets: telemetry is missing; repeat the test")]
-pub struct NotSeen {
-    /// Rests that were seen.
-    seen: usize,
-    /// All.
-    wanted: usize,
 }
 
 impl PositioningTest {
@@ -138,47 +128,43 @@ impl PlannedPositioning {
     /// # Errors
     /// A rest is not in the record.
     pub fn seen(&self, geometry: &MachineGeometry, record: &Recorded) -> Result<Option<Vec<Rest>>, NotSeen> {
-        let (mut rests, mut next) = (Vec::new(), self.rests.iter().peekable());
-        let (mut resting, mut begun) = (Vec::<Rest>::new(), false);
-        for sample in record.motion().iter() {
-            let Some((target, backwards)) = next.peek() else {
-                break;
-            };
-            begun |= sample.state.on_path();
-            let told = in_units(&sample.axes);
-            if begun && !sample.state.on_path() && (told[self.test.axis] - target).abs() < THERE {
-                let position = MachinePosition::of(&sample);
-                let MachinePosition::Motors(motors) = position else {
-                    return Ok(None);
-                };
-                let mut aimed = told;
-                aimed[self.test.axis] = *target;
-                let actual = in_units(&geometry.axes(&position));
-                resting.push(Rest {
-                    target: *target,
-                    backwards: *backwards,
-                    axes: core::array::from_fn(|axis| actual[axis] - aimed[axis]),
-                    motors: core::array::from_fn(|motor| {
-                        let axis = MOTOR_AXIS[motor];
-                        motors[motor] / AXIS_UNIT[axis] - aimed[axis]
-                    }),
-                });
-            } else if !resting.is_empty() {
-                rests.push(Rest::mean(&resting));
-                resting.clear();
-                next.next();
+        let axis = self.test.axis;
+        let is_there = |number: usize, told: &[f64; AXES]| {
+            (told[axis] / AXIS_UNIT[axis] - self.rests[number].0).abs() < THERE
+        };
+        let (mut seen, mut has_truth) = (Vec::new(), true);
+        rests(record, self.rests.len(), is_there, |number, samples| {
+            let all: Option<Vec<Rest>> = samples
+                .iter()
+                .map(|sample| self.rest(number, geometry, sample))
+                .collect();
+            match all {
+                Some(all) => seen.push(Rest::mean(&all)),
+                None => has_truth = false,
             }
-        }
-        if !resting.is_empty() {
-            rests.push(Rest::mean(&resting));
-        }
-        if rests.len() < self.rests.len() {
-            return Err(NotSeen {
-                seen: rests.len(),
-                wanted: self.rests.len(),
-            });
-        }
-        Ok(Some(rests))
+        })?;
+        Ok(has_truth.then_some(seen))
+    }
+
+    /// Of one sample; `None` without truth.
+    fn rest(&self, number: usize, geometry: &MachineGeometry, sample: &MotionSample) -> Option<Rest> {
+        let (target, backwards) = self.rests[number];
+        let position = MachinePosition::of(sample);
+        let MachinePosition::Motors(motors) = position else {
+            return None;
+        };
+        let mut aimed = in_units(&sample.axes);
+        aimed[self.test.axis] = target;
+        let actual = in_units(&geometry.axes(&position));
+        Some(Rest {
+            target,
+            backwards,
+            axes: core::array::from_fn(|axis| actual[axis] - aimed[axis]),
+            motors: core::array::from_fn(|motor| {
+                let axis = MOTOR_AXIS[motor];
+                motors[motor] / AXIS_UNIT[axis] - aimed[axis]
+            }),
+        })
     }
 }
 
@@ -196,11 +182,10 @@ pub struct Rest {
 }
 
 impl Rest {
-    /// Of its samples, once settled.
+    /// Of its samples.
     fn mean(samples: &[Self]) -> Self {
-        let settled = &samples[(SETTLING * samples.len() as f64) as usize..];
-        let count = settled.len() as f64;
-        let mean = |of: &dyn Fn(&Self) -> f64| settled.iter().map(of).sum::<f64>() / count;
+        let count = samples.len() as f64;
+        let mean = |of: &dyn Fn(&Self) -> f64| samples.iter().map(of).sum::<f64>() / count;
         Self {
             axes: core::array::from_fn(|axis| mean(&|rest| rest.axes[axis])),
             motors: core::array::from_fn(|motor| mean(&|rest| rest.motors[motor])),

@@ -10,6 +10,7 @@ mod dry_run;
 mod explain;
 mod jog;
 mod measure;
+mod pivots;
 mod plan;
 mod positioning;
 mod probe;
@@ -50,6 +51,7 @@ enum Command {
     DryRun(dry_run::DryRun),
     Jog(jog::JogCommand),
     Measure(measure::Measure),
+    Pivots(pivots::Pivots),
     Plan(plan::Plan),
     Positioning(positioning::PositioningCommand),
     Probe(probe::Probe),
@@ -68,6 +70,7 @@ impl Cli {
             Command::DryRun(command) => command.run(),
             Command::Jog(command) => command.run(),
             Command::Measure(command) => command.run(),
+            Command::Pivots(command) => command.run(),
             Command::Plan(command) => command.run().map(|()| ExitCode::SUCCESS),
             Command::Positioning(command) => command.run(),
             Command::Probe(command) => command.run(),
@@ -79,6 +82,14 @@ impl Cli {
 
 /// Exit code of what is outside its limits.
 const OUTSIDE: u8 = 3;
+
+/// A rest that makes sense.
+fn dwell(text: &str) -> Result<f64, &'static str> {
+    match text.parse() {
+        Ok(seconds) if (0.1..=60.0).contains(&seconds) => Ok(seconds),
+        _ => Err("must be a number of seconds from 0.1 to 60"),
+    }
+}
 
 /// A number that is above 0, of an option.
 fn above_0(text: &str) -> Result<f64, String> {

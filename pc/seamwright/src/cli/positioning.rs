@@ -1,7 +1,7 @@
 //! `seamwright positioning`: a test of positioning accuracy after ISO 230-2, and tables that make up for what it shows.
 
 use super::boards::{BoardArgs, exit_code};
-use super::{OUTSIDE, above_0};
+use super::{OUTSIDE, above_0, dwell};
 use crate::console::{errln, outln};
 use crate::terminal::Operator;
 use anyhow::{Context, anyhow, bail};
@@ -70,14 +70,6 @@ pub struct PositioningCommand {
     /// Folder for plots (SVG) and tables (CSV) [default: none]
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
-}
-
-/// A rest that makes sense.
-fn dwell(text: &str) -> Result<f64, &'static str> {
-    match text.parse() {
-        Ok(seconds) if (0.1..=60.0).contains(&seconds) => Ok(seconds),
-        _ => Err("must be a number of seconds from 0.1 to 60"),
-    }
 }
 
 /// What deviates: name, axis, and the first of its motors.
