@@ -18,6 +18,9 @@ const MOST: usize = 24;
 const SEEN: f64 = 0.02;
 /// A length that is seen by less than this part is seen together with others.
 const ALONE: f64 = 0.999;
+/// How far linear axes may be beside their places by their scales, which no attitude tells from arms \[mm\]: those of the class
+/// ±3 µm/m over the half metre or so that they go.
+const ACCURACY: f64 = 0.0015;
 /// Lengths are changed by so much to see how the tip goes with them \[mm\].
 const STEP: f64 = 1.0;
 /// No arm is further off than this \[mm\]: then something else is wrong.
@@ -41,7 +44,7 @@ pub struct Arm {
     pub before_mm: f64,
     /// As it was found \[mm\].
     pub found_mm: f64,
-    /// Of what was found, 2 σ \[mm\]; `None` of one that is not seen, or only together with others.
+    /// Of what was found: 2 σ of what is left, and what scales may make of it \[mm\]; `None` of one that is not seen, or only together with others.
     pub uncertainty_mm: Option<f64>,
 }
 
@@ -217,28 +220,35 @@ fn fitted(lengths: Vec<(Vec<Step>, f64)>, ways: &[Vec<Vector3<f64>>], seen: &[Se
     }
     let eigen = SymmetricEigen::new(normal);
     let least = SEEN * SEEN * seen.len() as f64;
-    let directions = || (0..MOST).filter(|k| eigen.eigenvalues[*k] > least);
-    let change = directions().fold(SVector::<f64, MOST>::zeros(), |change, k| {
-        let direction = eigen.eigenvectors.column(k);
-        change + direction * (direction.dot(&right) / eigen.eigenvalues[k])
-    });
+    let (mut inverse, mut is_seen, mut count) = (normal * 0.0, [0.0; MOST], 0);
+    for (value, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *value > least {
+            inverse += direction * direction.transpose() / *value;
+            for (part, along) in is_seen.iter_mut().zip(&direction) {
+                *part += along * along;
+            }
+            count += 1;
+        }
+    }
+    let change = inverse * right;
+    let together = |weights: &dyn Fn(usize) -> f64, stand: usize| -> Vector3<f64> {
+        let each = ways.iter().enumerate().map(|(k, way)| way[stand] * weights(k));
+        each.sum()
+    };
     let left: Vec<_> = (0..seen.len())
-        .map(|i| {
-            let explained = ways.iter().enumerate().map(|(k, way)| way[i] * change[k]);
-            beside[i] - explained.sum::<Vector3<f64>>()
-        })
+        .map(|stand| beside[stand] - together(&|k| change[k], stand))
         .collect();
-    let free = (3 * seen.len()).saturating_sub(directions().count() + 3).max(1);
+    let free = (3 * seen.len()).saturating_sub(count + 3).max(1);
     let variance = left.iter().map(Vector3::norm_squared).sum::<f64>() / free as f64;
     let arm = |(number, (path, before_mm)): (usize, (Vec<Step>, f64))| {
-        let parts = || directions().map(|k| (k, eigen.eigenvectors[(number, k)].powi(2)));
-        let alone = parts().map(|(_, part)| part).sum::<f64>() > ALONE;
-        let spread = parts().map(|(k, part)| part / eigen.eigenvalues[k]).sum::<f64>();
+        let weight = |stand| together(&|k| inverse[(number, k)], stand).norm();
+        let by_scales = ACCURACY * (0..seen.len()).map(weight).sum::<f64>();
+        let by_scatter = 2.0 * (variance * inverse[(number, number)]).sqrt();
         Arm {
             path,
             before_mm,
             found_mm: before_mm + change[number],
-            uncertainty_mm: alone.then(|| 2.0 * (variance * spread).sqrt()),
+            uncertainty_mm: (is_seen[number] > ALONE).then_some(by_scatter + by_scales),
         }
     };
     Arms {
