@@ -159,6 +159,11 @@ impl Drive {
         self.state.at(|mode| mode.tool)
     }
 
+    /// Position and velocity of the load as a rigid body, without what its resonances add \[1/s\].
+    pub fn body(&self) -> [f64; 2] {
+        [self.state.load, self.state.velocity]
+    }
+
     /// Velocity of the motor \[1/s\].
     pub fn velocity(&self) -> f64 {
         self.state.motor_velocity()

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 use plant::{BeamConfig, Growth, ModeConfig, MotionPlant, PlantConfig, Wave};
 use plant_file::{DEFAULT_MACHINE, PlantFile};
-use shared::io::{MOTORS, MotionCommand};
+use shared::io::{DacCode, MOTORS, MotionCommand};
 
 const TICK: f64 = 250e-6;
 
@@ -166,4 +166,43 @@ fn a_beam_yaws_at_its_frequency_and_with_its_damping() {
             "{yaw_hz} Hz ζ {damping} μ {share}: {seen_hz:.2} Hz, ζ {seen_damping:.4}"
         );
     }
+}
+
+/// A drawn machine with the heaviest resonances, its beam stiff and of the largest share, goes to and fro and stands again.
+#[test]
+fn a_beam_on_motors_that_resonate_adds_nothing_by_itself() {
+    let mut gantry = machine(|plant| {
+        for motor in plant.motors[..2].iter_mut().flatten() {
+            motor.power_up = 1000.0;
+            let mode = ModeConfig {
+                frequency_hz: 60.0,
+                damping: 0.03,
+                motor: 0.33,
+                grating: -0.8,
+                tool: -1.0,
+            };
+            motor.mechanics.modes.push(mode).unwrap();
+        }
+        plant.beam = Some(BeamConfig {
+            yaw_hz: 60.0,
+            damping: 0.02,
+            share: 0.3,
+        });
+    });
+    let (mut least, mut most) = (f64::MAX, f64::MIN);
+    for tick in 0..12_000 {
+        let told = match tick {
+            0..2_000 => 0.05 * libm::sin(f64::from(tick) * 0.02),
+            _ => 0.0,
+        };
+        let mut command = STANDS;
+        command.dac[0] = DacCode::from_ratio(told, 1.0);
+        gantry.advance(&command);
+        let yaw = gantry.truth()[0] - gantry.truth()[1];
+        assert!(yaw.abs() < 1.0, "{tick}: {yaw} mm");
+        if tick >= 10_000 {
+            (least, most) = (least.min(yaw), most.max(yaw));
+        }
+    }
+    assert!(most - least < 1e-3, "{least} to {most} mm");
 }

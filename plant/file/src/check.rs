@@ -15,6 +15,8 @@ const SLIDE_DEAD_TIME: f64 = 4e-3;
 const HIGHEST_MODE: f64 = 1500.0;
 /// Highest frequency at which a gantry yaws \[Hz\]: its model, by ticks of 250 µs, is right to some percent of the damping up to this.
 const HIGHEST_YAW: f64 = 100.0;
+/// Largest inertial share of a beam: the model is stable up to a third.
+const MOST_SHARE: f64 = 0.3;
 /// Longest time until a brake opens \[s\].
 const MOST_ENABLE: f64 = 2.0;
 /// Bandwidths that the model of a drive resolves \[Hz\].
@@ -92,7 +94,7 @@ pub fn plant(file: &PlantFile) -> Result<(), Mistake> {
         let values = [
             ("yaw_hz", beam.yaw_hz, BeWithin(0.1, HIGHEST_YAW)),
             ("damping", beam.damping, BeWithin(0.0, 1.0)),
-            ("share", beam.share, BeWithin(0.0, 0.5)),
+            ("share", beam.share, BeWithin(0.0, MOST_SHARE)),
         ];
         all("beam", &values)?;
         if file.plant.motors[..2].contains(&None) {
