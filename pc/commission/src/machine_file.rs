@@ -1,4 +1,4 @@
-//! Loops in a machine file: values are replaced, everything else stays as it was written, and what was there before is told
+//! Loops, deviations and arms in a machine file: values are replaced, everything else stays as it was written, and what was there before is told
 //! beside them.
 
 use crate::arms::Arm;
@@ -172,21 +172,17 @@ pub fn rewrite_arms(text: &str, name: &str, arms: &[Arm]) -> Result<String, Writ
         .and_then(|kinematics| kinematics.get_mut(name))
         .and_then(Item::as_table_mut)
         .ok_or_else(|| WriteError::NoTable(format!("kinematics.{name}")))?;
+    let rounded = |arm: &Arm| (arm.found_mm * 1e4).round() / 1e4;
     for arm in arms {
-        let (key, index) = arm.place().ok_or(WriteError::Joints)?;
-        let found = (arm.found_mm * 1e4).round() / 1e4;
-        let Some(index) = index else {
-            replace(table, key, found.into());
-            continue;
-        };
-        let mut values: Array = arms
-            .iter()
-            .filter(|other| other.place().is_some_and(|(of, _)| of == key))
-            .map(|other| (other.found_mm * 1e4).round() / 1e4)
-            .collect();
-        if index == 0 {
-            values.fmt();
-            replace(table, key, values.into());
+        match arm.place().ok_or(WriteError::Joints)? {
+            (key, None) => replace(table, key, rounded(arm).into()),
+            (key, Some(0)) => {
+                let of_key = |other: &&Arm| other.place().is_some_and(|(of, _)| of == key);
+                let values: Array = arms.iter().filter(of_key).map(rounded).collect();
+                replace(table, key, values.into());
+            }
+            // Written with the first of its list.
+            (_, Some(_)) => {}
         }
     }
     Ok(document.to_string())

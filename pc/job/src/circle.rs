@@ -1,13 +1,13 @@
 //! A circular test: a circle that two axes make, round in both directions, with the beams off.
 
+use crate::test_program::program_from_home;
 use cam::path::{PathError, Planner};
 use commission::{Turn, TurnFigures};
 use config::machine::MachineFile;
 use host_link::geometry::MachineGeometry;
 use host_link::record::{MachinePosition, Recorded};
-use nc::{NcError, Options, Program, interpret};
+use nc::{NcError, Program};
 use std::fmt;
-use std::sync::Arc;
 use thiserror::Error;
 
 /// Room between the circle and the ends of travel \[mm\].
@@ -136,13 +136,7 @@ impl CircularTest {
     /// Why the machine cannot make it.
     pub fn plan(self, machine: &MachineFile, planner: &Planner) -> Result<PlannedCircle, NoCircle> {
         let centre = self.centre(machine, planner)?;
-        let from = machine.homed_axes();
-        let options = Options {
-            setup: Arc::new(planner.setup(&from)),
-            ..Options::default()
-        };
-        let program = interpret(&self.text(centre), options)?;
-        planner.program(&program, &from, None)?;
+        let program = program_from_home::<NoCircle>(&self.text(centre), machine, planner)?;
         Ok(PlannedCircle {
             program,
             test: self,

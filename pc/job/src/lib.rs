@@ -32,6 +32,7 @@ mod slides;
 mod stopped;
 mod surroundings;
 mod teaching;
+mod test_program;
 mod tracking;
 mod waits;
 

@@ -1,18 +1,18 @@
 //! A test of the pivots: the tip stays at a place of the work while the attitude of the tool goes round.
 
 use crate::rests::{NotSeen, rests};
+use crate::test_program::program_from_home;
 use cam::path::{PathError, Planner};
 use commission::SeenTip;
 use config::machine::MachineFile;
 use host_link::geometry::MachineGeometry;
 use host_link::record::{MachinePosition, Recorded};
 use nalgebra::Vector3;
-use nc::{NcError, Options, Program, interpret};
+use nc::{NcError, Program};
 use shared::geometry::Pose;
 use shared::io::{AXES, AXIS_NAMES};
 use shared::kinematics::{AXIS_UNIT, AxisLimits, Kinematics, violations};
 use shared::parameter::ParameterError;
-use std::sync::Arc;
 use thiserror::Error;
 
 /// The first of the rotary axes.
@@ -168,7 +168,7 @@ impl PivotTest {
         for axis in (ROTARY..AXES).filter(|axis| fitted[*axis]) {
             let swing = self.swing_deg.to_radians();
             let AxisLimits { min, max, .. } = limits[axis];
-            let angles = [-swing, 0.0, swing].map(|swing| (middle[axis] + swing).clamp(min, max));
+            let angles = [-swing, 0.0, swing].map(|swing| (middle[axis] + swing).max(min).min(max));
             let turned = |(number, axes): (usize, &[f64; AXES])| {
                 let mut angles = angles;
                 if number % 2 == 1 {
@@ -209,14 +209,7 @@ impl PivotTest {
             text += &format!("{away}{}G4 P{}\n{away}", block(stand), self.dwell_s);
         }
         text.push_str("M2\n");
-        let from = machine.homed_axes();
-        let options = Options {
-            setup: Arc::new(planner.setup(&from)),
-            ..Options::default()
-        };
-        let program = interpret(&text, options)?;
-        planner.program(&program, &from, None)?;
-        Ok(program)
+        program_from_home(&text, machine, planner)
     }
 }
 

@@ -1,16 +1,16 @@
 //! A test of positioning accuracy: an axis goes to targets from both sides and rests at each (ISO 230-2).
 
 use crate::rests::{NotSeen, rests};
+use crate::test_program::program_from_home;
 use cam::path::{PathError, Planner};
 use config::machine::MachineFile;
 use host_link::geometry::MachineGeometry;
 use host_link::record::{MachinePosition, Recorded};
-use nc::{NcError, Options, Program, interpret};
+use nc::{NcError, Program};
 use shared::io::{AXES, AXIS_NAMES, MOTOR_AXIS, MOTORS};
 use shared::kinematics::AXIS_UNIT;
 use shared::protocol::MotionSample;
 use std::fmt::Write;
-use std::sync::Arc;
 use thiserror::Error;
 
 /// Room between the outer targets and the ends of travel (mm or degrees).
@@ -107,13 +107,7 @@ impl PositioningTest {
             go(first - BEYOND, 0.0);
         }
         text.push_str("M2\n");
-        let from = machine.homed_axes();
-        let options = Options {
-            setup: Arc::new(planner.setup(&from)),
-            ..Options::default()
-        };
-        let program = interpret(&text, options)?;
-        planner.program(&program, &from, None)?;
+        let program = program_from_home::<NoTest>(&text, machine, planner)?;
         Ok(PlannedPositioning {
             program,
             test: self,
