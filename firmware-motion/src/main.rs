@@ -68,12 +68,13 @@ mod app {
         controller: Controller = Controller::new(),
         planning_task: PlanningTask = PlanningTask::new(),
         storage: link::Storage<'static> = link::Storage::new(),
+        buffers: link::Buffers = link::Buffers::new(),
         queue: Queue<Published, 16> = Queue::new(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = board::motion::init(cx.core);
         let (outbox, reader) = cx.local.queue.split();
-        let network = Network::new(board.network, cx.local.storage, reader);
+        let network = Network::new(board.network, cx.local.storage, cx.local.buffers, reader);
         defmt::info!(
             "motion board {} with firmware {}",
             board::NAME,

@@ -55,12 +55,13 @@ mod app {
     #[init(local = [
         controller: Controller = Controller::new(),
         storage: link::Storage<'static> = link::Storage::new(),
+        buffers: link::Buffers = link::Buffers::new(),
         queue: Queue<Published, 16> = Queue::new(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = board::tracker::init(cx.core);
         let (outbox, reader) = cx.local.queue.split();
-        let network = Network::new(board.network, cx.local.storage, reader);
+        let network = Network::new(board.network, cx.local.storage, cx.local.buffers, reader);
         defmt::info!(
             "tracker board {} with firmware {}",
             board::NAME,

@@ -49,8 +49,8 @@
 //! }
 //! ```
 //!
-//! At init, with `#[init(local = [storage: link::Storage<'static> = link::Storage::new()])]`, the link is
-//! `Link::new(&mut device, cx.local.storage, address, identity, now_us())`.
+//! At init, with `storage: link::Storage<'static> = link::Storage::new()` and `buffers: link::Buffers = link::Buffers::new()` in its
+//! `local`, the link is `Link::new(&mut device, cx.local.storage, cx.local.buffers, address, identity, now_us())`.
 //!
 //! Rules of this crate: no allocation, no logging, no interrupts, no clock of its own.
 #![no_std]
@@ -66,4 +66,4 @@ pub use address::{Address, Partner, Source};
 pub use counters::Counters;
 pub use session::Node;
 pub use stack::Link;
-pub use storage::Storage;
+pub use storage::{Buffers, Storage};

@@ -4,7 +4,7 @@ use crate::address::{Address, Partner, Source};
 use crate::announce::announce;
 use crate::counters::{Counters, count};
 use crate::session::{Node, Session, number};
-use crate::storage::{FRAME, Storage};
+use crate::storage::{Buffers, FRAME, Storage};
 use shared::protocol::framing::{self, FrameError, MAX_MESSAGE};
 use shared::protocol::{
     ClockReply, DATAGRAM_PORT, Datagram, Identity, REQUEST_PORT, Refusal, Request, Response, Role,
@@ -54,6 +54,7 @@ impl<'a> Link<'a> {
     pub fn new(
         device: &mut (impl Device + ?Sized),
         storage: &'a mut Storage<'a>,
+        buffers: &'a mut Buffers,
         address: Address,
         identity: Identity,
         now_us: u64,
@@ -70,33 +71,23 @@ impl<'a> Link<'a> {
             .routes_mut()
             .add_default_ipv4_route(Ipv4Address::from(address.gateway));
 
-        let Storage {
-            sockets,
-            requests,
-            responses,
-            incoming,
-            to_pc,
-            to_partner,
-            nothing,
-            frame,
-        } = storage;
         let mut stream = tcp::Socket::new(
-            tcp::SocketBuffer::new(&mut requests[..]),
-            tcp::SocketBuffer::new(&mut responses[..]),
+            tcp::SocketBuffer::new(&mut buffers.requests[..]),
+            tcp::SocketBuffer::new(&mut buffers.responses[..]),
         );
         stream.set_nagle_enabled(false);
         stream.set_timeout(Some(TIMEOUT));
         stream.set_keep_alive(Some(KEEP_ALIVE));
         let to_pc = udp_socket(
-            packets(&mut incoming.0, &mut incoming.1),
-            packets(&mut to_pc.0, &mut to_pc.1),
+            packets(&mut storage.incoming, &mut buffers.incoming),
+            packets(&mut storage.to_pc, &mut buffers.to_pc),
         );
         let to_partner = udp_socket(
-            packets(&mut nothing.0, &mut nothing.1),
-            packets(&mut to_partner.0, &mut to_partner.1),
+            packets(&mut storage.nothing, &mut buffers.nothing),
+            packets(&mut storage.to_partner, &mut buffers.to_partner),
         );
 
-        let mut sockets = SocketSet::new(&mut sockets[..]);
+        let mut sockets = SocketSet::new(&mut storage.sockets[..]);
         // The first of the two UDP sockets gets what arrives.
         let to_pc = sockets.add(to_pc);
         let to_partner = sockets.add(to_partner);
@@ -107,7 +98,7 @@ impl<'a> Link<'a> {
             stream,
             to_pc,
             to_partner,
-            frame,
+            frame: &mut buffers.frame,
             address,
             identity,
             session: None,

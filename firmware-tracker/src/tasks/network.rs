@@ -3,7 +3,7 @@
 
 use super::{Controller, OutboxReader};
 use crate::board;
-use link::{Address, Counters, Link, Node, Source, Storage};
+use link::{Address, Buffers, Counters, Link, Node, Source, Storage};
 use rtic::Mutex;
 use shared::protocol::{
     Batch, ClockRequest, Datagram, Identity, Request, Response, Role, TrackerSample, TrackerTelemetry,
@@ -22,6 +22,7 @@ impl Network {
     pub fn new(
         mut device: board::Network,
         storage: &'static mut Storage<'static>,
+        buffers: &'static mut Buffers,
         outbox: OutboxReader,
     ) -> Self {
         let address = Address {
@@ -37,7 +38,7 @@ impl Network {
             board::SIMULATED_MACHINE,
         );
         Self {
-            link: Link::new(&mut device, storage, address, identity, board::now_us()),
+            link: Link::new(&mut device, storage, buffers, address, identity, board::now_us()),
             device,
             outbox,
             telemetry: Batch::default(),

@@ -1,7 +1,7 @@
 //! A board's link, a firmware behind it that remembers, and a PC at the other end of the line.
 
 use crate::line::{End, Line};
-use link::{Address, Counters, Link, Node, Source, Storage};
+use link::{Address, Buffers, Counters, Link, Node, Source, Storage};
 use shared::protocol::framing::{decode_datagram, decode_message, encode_datagram, encode_message};
 use shared::protocol::{
     DATAGRAM_PORT, Datagram, Identity, Measurement, REQUEST_PORT, Refusal, Request, Response, Role,
@@ -100,7 +100,8 @@ impl Bench {
             gateway: PC,
         };
         let storage = Box::leak(Box::new(Storage::new()));
-        let link = Link::new(&mut board_end, storage, address, identity, 0);
+        let buffers = Box::leak(Box::new(Buffers::new()));
+        let link = Link::new(&mut board_end, storage, buffers, address, identity, 0);
 
         let config = Config::new(EthernetAddress([2, 0, 0, 0, 0, 1]).into());
         let mut pc = Interface::new(config, &mut pc_end, Instant::ZERO);
