@@ -25,7 +25,7 @@ fn budget(firmware: Firmware, board: Board) -> Budget {
         // Most of the motion board's RAM is the planner: its elements, and the nodes at which it plans the speed.
         // Their initial values are in flash, too. The NUCLEO has 1 MB of flash and 320 kB of RAM, and the stack elsewhere.
         (Firmware::Motion, Board::Mps2An500 | Board::NucleoH723zg) => Budget {
-            flash: [200, 720],
+            flash: [200, 700],
             ram: [100, 345],
             controller: [100, 240],
         },

@@ -185,9 +185,25 @@ impl Response {
     /// The same of a drive whose commands count for so much more.
     pub(crate) fn of_gain(&self, factor: f64) -> Self {
         let mut scaled = self.clone();
-        let lines = scaled.lines.iter_mut().chain(&mut scaled.at_rest);
+        let lines = scaled.lines.iter_mut().chain(&mut scaled.doubtful);
+        let lines = lines.chain(&mut scaled.at_rest);
         lines.for_each(|line| line.gain *= factor);
         scaled
+    }
+
+    /// Whether the lines that are not believed could not cost the loop its margins, were they as they were seen: noise makes them
+    /// larger than they are.
+    pub(crate) fn doubts_are_small(&self, designed: &Loop, requirements: &Requirements) -> bool {
+        let doubtful = Self {
+            lines: self.doubtful.clone(),
+            at_rest: Vec::new(),
+            ..self.clone()
+        };
+        // Commands count for what the drive makes of them.
+        let doubtful = doubtful.of_gain(1.0 / designed.lag.gain);
+        let least = 10_f64.powf(-requirements.gain_db / 20.0);
+        open_loops(&doubtful, &designed.motor, requirements.coupling)
+            .is_ok_and(|loops| loops.iter().flatten().all(|(_, value)| value.norm() <= least))
     }
 
     /// Lines of the motor under way, and at rest if they are known.

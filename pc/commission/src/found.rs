@@ -73,21 +73,19 @@ impl Found {
         let turning = own(index, captured).find(|captured| captured.excitation.excited == Excited::Reference);
         let turning = turning.map_or(&[][..], |captured| &captured.samples);
         let swung = own(index, captured).find(|captured| is_sine(captured));
-        let response = Response::of(&captures, motor);
-        let designed = response
-            .as_ref()
-            .map_err(Clone::clone)
-            .map(|response| design(response, MOTOR_NAMES[index], motor, &requirements));
-        let found = designed.as_ref().ok().and_then(|designed| designed.as_ref().ok());
-        let friction = match &response {
-            Ok(response) => friction(response, turning, motor, found),
-            Err(_) => Err(NoFriction::NoResponse),
+        let believed = believed(&captures, MOTOR_NAMES[index], motor, &requirements);
+        let response = believed.as_ref().ok().map(|(response, _)| response);
+        let designed = believed.as_ref().ok().map(|(_, designed)| designed);
+        let found = designed.and_then(|designed| designed.as_ref().ok());
+        let friction = match response {
+            Some(response) => friction(response, turning, motor, found),
+            None => Err(NoFriction::NoResponse),
         };
         let resting = captures.iter().find(|capture| capture.way == 0.0);
         let unit = AXIS_UNIT[MOTOR_AXIS[index]];
         let measured = Measured {
             motor,
-            response: response.as_ref().ok(),
+            response,
             designed: found,
             turning,
             friction: friction.as_ref().ok(),
@@ -99,8 +97,8 @@ impl Found {
         if let Some(refusal) = measured.refusal()? {
             return Err(refusal.into());
         }
-        let mut of_loop = designed??;
-        let response = response?;
+        let (response, designed) = believed?;
+        let mut of_loop = designed?;
         // Commands count for what the drive makes of them.
         let now = response.of_gain(1.0 / of_loop.lag.gain);
         let open_loops = [
@@ -116,6 +114,23 @@ impl Found {
             open_loops,
         })
     }
+}
+
+/// What is measured of a motor, and the loop on that. Few lines are believed in vain, unless the others could not cost that loop its
+/// margins.
+fn believed(
+    captures: &[Capture],
+    name: &str,
+    motor: &MotorConfig,
+    requirements: &Requirements,
+) -> Result<(Response, Result<Loop, NoDesign>), NoResponse> {
+    let response = Response::measured(captures, motor)?;
+    let designed = design(&response, name, motor, requirements);
+    let small = |designed: &Loop| response.doubts_are_small(designed, requirements);
+    if !designed.as_ref().is_ok_and(small) {
+        response.check()?;
+    }
+    Ok((response, designed))
 }
 
 /// Those of `motors` that swung by themselves while they were captured: in slower loops they may not.

@@ -37,6 +37,8 @@ pub struct Capture {
 pub struct Response {
     /// Lines that were excited and are believed, upwards.
     pub lines: Vec<Line>,
+    /// Those up to 200 Hz that are not: what is seen there is noise, at least in part.
+    pub doubtful: Vec<Line>,
     /// Part of the lines excited up to 200 Hz that are.
     pub believed: f64,
     /// The same of the motor at rest, where friction holds it; empty if that was not captured.
@@ -78,23 +80,38 @@ impl Response {
     /// # Errors
     /// Too few lines are believed.
     pub fn of(captures: &[Capture], motor: &MotorConfig) -> Result<Self, NoResponse> {
+        let response = Self::measured(captures, motor)?;
+        response.check().map(|()| response)
+    }
+
+    /// The same, however few lines are believed.
+    ///
+    /// # Errors
+    /// A capture is not whole, or there is none.
+    pub(crate) fn measured(captures: &[Capture], motor: &MotorConfig) -> Result<Self, NoResponse> {
         let (resting, going) = by_state(captures)?;
-        let all = lines(&going, motor);
-        let below = |line: &&Line| line.hz <= MOST_BELOW_HZ;
-        let asked = all.iter().filter(below).count();
-        let lines_of = |all: Vec<Line>| all.into_iter().filter(Line::is_believed).collect();
-        let at_rest = lines_of(lines(&resting, motor));
-        let lines: Vec<_> = lines_of(all);
-        let believed = lines.iter().filter(below).count() as f64 / asked as f64;
-        if believed < MOST {
-            let percent = 100.0 * believed;
-            return Err(NoResponse::Incoherent { percent });
-        }
+        let believed_of = |all: Vec<Line>| all.into_iter().partition::<Vec<_>, _>(Line::is_believed);
+        let (at_rest, _) = believed_of(lines(&resting, motor));
+        let (lines, mut doubtful) = believed_of(lines(&going, motor));
+        let below = |line: &Line| line.hz <= MOST_BELOW_HZ;
+        doubtful.retain(below);
+        let believed = lines.iter().filter(|line| below(line)).count();
         Ok(Self {
+            believed: believed as f64 / (believed + doubtful.len()) as f64,
             lines,
-            believed,
+            doubtful,
             at_rest,
         })
+    }
+
+    /// # Errors
+    /// Too few lines are believed.
+    pub(crate) fn check(&self) -> Result<(), NoResponse> {
+        if self.believed < MOST {
+            let percent = 100.0 * self.believed;
+            return Err(NoResponse::Incoherent { percent });
+        }
+        Ok(())
     }
 }
 

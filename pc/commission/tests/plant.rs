@@ -2,15 +2,17 @@
 //! by hand (mathematics 0.11), which knows nothing of captures.
 
 use commission::{
-    Capture, Complex, Line, Loop, Margins, Measured, NoFriction, Planned, Refusal, Requirements, Response,
-    SETTLE_PERIODS, TURNS_HZ, WAY, design, friction, plan, plan_at_rest, rewrite, swing, way,
+    Capture, CapturedMotion, Complex, Found, Line, Loop, Margins, Measured, NoFriction, NoResponse, NotFound,
+    Planned, Refusal, Requirements, Response, SETTLE_PERIODS, TURNS_HZ, WAY, design, friction, measured,
+    plan, plan_at_rest, rewrite, softened, swing, way,
 };
+use config::machine::MachineFile;
 use plant::{ModeConfig, MotionPlant, MotorConfig as TrueMotor, PlantConfig};
 use plant_file::{PlantChoice, PlantFile};
 use shared::control::{MotorConfig, Pid, PidState, Setpoint};
-use shared::io::{DacCode, MOTOR_NAMES, MOTORS, MotionCommand, SLIDES};
+use shared::io::{DacCode, MOTOR_AXIS, MOTOR_NAMES, MOTORS, MotionCommand, SLIDES};
 use shared::motion::{Chirp, check_coupling, check_gains};
-use shared::protocol::{CAPTURE_TICKS, CaptureSample};
+use shared::protocol::{CAPTURE_TICKS, CaptureSample, Excitation, Excited};
 use shared::ticks::SERVO_PERIOD_S;
 use std::f64::consts::TAU;
 
@@ -276,6 +278,7 @@ fn a_gain_that_no_machine_file_may_have_is_not_found() {
     };
     let response = Response {
         lines: (2..=200).map(line).collect(),
+        doubtful: Vec::new(),
         believed: 1.0,
         at_rest: Vec::new(),
     };
@@ -372,6 +375,73 @@ fn most_lines_of_weak_axes_are_believed() {
             response.as_ref().map(|response| response.believed)
         );
         assert!(response.is_ok(), "{draw}: {response:?}");
+    }
+}
+
+/// Behind mechanics that swing slowly, half of the lines of B are noise. What is seen there would cost its loop nothing, unless the
+/// noise is so loud that anything may hide in it.
+#[test]
+fn few_lines_are_enough_where_the_others_could_not_cost_the_loop_its_margins() {
+    const B: usize = 5;
+    let text = include_str!("../../../machines/stir-gantry.toml");
+    let machine = softened(&MachineFile::parse("m.toml", text).expect("a machine").motion);
+    let motor = machine.motors[B].clone().expect("it is fitted");
+    let acceleration = machine.axes[MOTOR_AXIS[B]]
+        .as_ref()
+        .expect("it is fitted")
+        .max_acceleration;
+    let captured = |excited, chirp: &Planned, way, samples| CapturedMotion {
+        excitation: Excitation {
+            motor: B as u8,
+            excited,
+            amplitude: chirp.amplitude,
+            from_hz: chirp.from_hz,
+            to_hz: chirp.to_hz,
+            settle_periods: SETTLE_PERIODS,
+            way,
+            max_travel: 0.0,
+            max_speed: 0.0,
+        },
+        samples,
+    };
+    let turn = Planned {
+        from_hz: TURNS_HZ,
+        to_hz: TURNS_HZ,
+        amplitude: 1.0,
+    };
+    let of = |config: &TrueMotor| {
+        let shaken = captures_of(B, config, &motor, acceleration);
+        let shaken = shaken.into_iter().map(|capture| {
+            let Capture {
+                planned,
+                way,
+                samples,
+            } = capture;
+            captured(Excited::Command, &planned, way, samples)
+        });
+        let turning = turning(B, config, &motor, turn.amplitude);
+        let turning = captured(Excited::Reference, &turn, 0.0, turning);
+        let captured: Vec<_> = shaken.chain([turning]).collect();
+        let believed = measured(&motor, B, &captured).expect("whole captures");
+        let believed = believed.iter().filter(|line| line.hz <= 200.0);
+        let few = believed.clone().filter(|line| line.is_believed()).count() * 2 < believed.count();
+        (few, Found::of(&machine, Some(&motor), B, &captured))
+    };
+    for draw in ["draw:usual:20001", "draw:usual:20006"] {
+        let choice: PlantChoice = draw.parse().expect("a draw");
+        let plant = choice.of("stir-gantry").expect("a machine");
+        let mut config = plant.plant.motors[B].clone().expect("wired");
+        config.grating.noise *= 10.0;
+        let (few, found) = of(&config);
+        assert!(few, "{draw}");
+        let found = found.unwrap_or_else(|error| panic!("{draw}: {error}"));
+        assert_near(&config, &found.of_loop);
+        config.grating.noise *= 10.0;
+        let found = of(&config).1;
+        assert!(
+            matches!(found, Err(NotFound::Response(NoResponse::Incoherent { .. }))),
+            "{draw}: {found:?}"
+        );
     }
 }
 
