@@ -94,16 +94,6 @@ impl Found {
             // A degree of a rotary axis, seen at the end of its arm.
             tool_mm: if unit == 1.0 { 1.0 } else { unit * ARM_MM },
         };
-        // A motor that swings by itself tells little of what it answers, however small that is.
-        if response.is_some_and(|response| response.check().is_err()) {
-            let unbelieved = Measured {
-                response: None,
-                ..measured
-            };
-            if let Some(refusal) = unbelieved.refusal()? {
-                return Err(refusal.into());
-            }
-        }
         if let Some(refusal) = measured.refusal()? {
             return Err(refusal.into());
         }

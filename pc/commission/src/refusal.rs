@@ -115,13 +115,14 @@ impl Measured<'_> {
     pub fn refusal(&self) -> Result<Option<Refusal>, ParameterError> {
         let acceleration = self.reached().filter(|part| *part < REACHED);
         let acceleration = acceleration.map(|part| Refusal::Acceleration { part });
-        let Some(response) = self.response else {
-            let swings = self.swings_at().map(|hz| Refusal::Swings { hz });
-            return Ok(swings.or(acceleration));
-        };
-        if acceleration.is_some() {
-            return Ok(acceleration);
+        // One that swings by itself tells little of what it answers, also where the lines that are not believed are small.
+        let enough = self.response.is_some_and(|response| response.check().is_ok());
+        if !enough && let Some(hz) = self.swings_at() {
+            return Ok(Some(Refusal::Swings { hz }));
         }
+        let (None, Some(response)) = (&acceleration, self.response) else {
+            return Ok(acceleration);
+        };
         let kp = self.designed.map_or(0.0, |designed| designed.motor.kp);
         if kp < LEAST_KP {
             let swings = self.swings_at().map(|hz| Refusal::Resonance { hz, kp });

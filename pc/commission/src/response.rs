@@ -39,7 +39,7 @@ pub struct Response {
     pub lines: Vec<Line>,
     /// Those up to 200 Hz that are not: what is seen there is noise, at least in part.
     pub doubtful: Vec<Line>,
-    /// Part of the lines excited up to 200 Hz that are.
+    /// Part of the lines excited up to 200 Hz that are believed.
     pub believed: f64,
     /// The same of the motor at rest, where friction holds it; empty if that was not captured.
     pub at_rest: Vec<Line>,
