@@ -362,6 +362,7 @@ impl Station {
         if let Some(running) = self.running.take_if(|running| running.is_over()) {
             // All that happened before it ended.
             while let Ok(received) = running.events().receive(Duration::ZERO) {
+                self.live.lost += received.lost;
                 self.live.take(&received.event, now);
             }
             let by_hand = self.by_hand.take().is_some();

@@ -82,7 +82,11 @@ fn ten_watch_a_weld_and_one_never_reads_and_the_job_is_the_same() {
         let live = &watcher.watched.live;
         for (own, seen) in station.live.deviations.bins().zip(live.deviations.bins()) {
             let differs = own.1.worst_mm().unwrap_or(0.0) - seen.1.worst_mm().unwrap_or(0.0);
-            assert!(differs.abs() < 1e-8 && own.0 == seen.0, "{own:?} {seen:?}");
+            let lost = station.live.lost;
+            assert!(
+                differs.abs() < 1e-8 && own.0 == seen.0,
+                "{own:?} {seen:?}, {lost} samples lost"
+            );
         }
         let happened = |journal: &hmi::live::Journal| -> Vec<String> {
             let entries = journal.entries();
