@@ -59,7 +59,8 @@ impl Bench {
         Self::at_pace(machine, 1.0)
     }
 
-    fn at_pace(machine: &str, pace: f64) -> Self {
+    /// With the boards' time in units of the clock's.
+    pub fn at_pace(machine: &str, pace: f64) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         Self::with(format!("../../machines/{machine}.toml").into(), folder, pace)
     }
