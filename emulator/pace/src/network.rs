@@ -9,8 +9,8 @@ use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
 
-/// Wall time that the main thread may take for what has arrived \[ns\], and between two looks at one that rests. A frame takes
-/// some 50 µs; a permit of the beams is valid for 10 ms of the board's time.
+/// Wall time that the main thread may take for what has arrived \[ns\]. A frame takes some 50 µs; a permit of the beams
+/// is valid for 10 ms of the board's time.
 const SERVED_WITHIN_NS: i64 = 500_000;
 /// Wall time after which a thread that does not rest is not waited for again until it has rested \[ns\].
 const PATIENCE_NS: i64 = 1_000_000_000;
@@ -19,8 +19,6 @@ const PATIENCE_NS: i64 = 1_000_000_000;
 pub struct Network {
     /// Its `stat` and `status` in /proc.
     files: Option<[File; 2]>,
-    /// Wall time of the last look \[ns\].
-    looked: i64,
     busy: Option<Busy>,
 }
 
@@ -44,18 +42,12 @@ impl Network {
         let open = |name| File::open(format!("/proc/self/task/{thread}/{name}"));
         Self {
             files: open("stat").and_then(|stat| Ok([stat, open("status")?])).ok(),
-            looked: -SERVED_WITHIN_NS,
             busy: None,
         }
     }
 
     /// Whether frames may have been waiting for too long at `now` \[ns\].
     pub fn is_behind(&mut self, now: i64) -> bool {
-        // Nothing waits for longer than since the last look at a thread that rested then, and a look is not for nothing.
-        if self.busy.is_none() && now - self.looked < SERVED_WITHIN_NS {
-            return false;
-        }
-        self.looked = now;
         self.busy = self.rests_if_busy().ok().flatten().map(|rests| match self.busy {
             Some(busy) if busy.rests == rests => busy,
             _ => Busy { rests, since: now },
@@ -128,17 +120,15 @@ mod tests {
         });
         let mut network = Network::of_thread(started.recv().expect("it runs"));
         // From its first rest-free look on it is busy; what it did before does not count.
-        let mut first = 0;
         while network.busy.is_none() {
-            first += LATER;
-            network.is_behind(first);
+            network.is_behind(0);
         }
-        assert!(!network.is_behind(first + LATER - 1));
-        assert!(network.is_behind(first + LATER));
-        assert!(!network.is_behind(first + PATIENCE_NS));
+        assert!(!network.is_behind(LATER - 1));
+        assert!(network.is_behind(LATER));
+        assert!(!network.is_behind(PATIENCE_NS));
         over.store(true, Ordering::Relaxed);
         spins.join().expect("no panic");
-        assert!(!network.is_behind(first + LATER), "it has ended");
+        assert!(!network.is_behind(LATER), "it has ended");
     }
 
     #[test]
@@ -152,10 +142,7 @@ mod tests {
         let mut network = Network::of_thread(started.recv().expect("it runs"));
         while network.rests_if_busy().expect("a thread that runs").is_some() {}
         assert!(!network.is_behind(0));
-        assert!(!network.is_behind(LATER - 1));
-        assert_eq!(network.looked, 0, "it rested a moment ago");
         assert!(!network.is_behind(LATER));
-        assert_eq!(network.looked, LATER);
         drop(over);
         rests.join().expect("no panic");
     }

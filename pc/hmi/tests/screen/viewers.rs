@@ -16,7 +16,7 @@ use std::net::SocketAddr;
 use tungstenite::{Error, Message};
 
 /// Time of the boards in units of the clock's where this screen is compared with those that watch: a screen loses samples that it is too
-/// slow for, and the boards can go a hundred times as fast as the clock.
+/// slow for, and boards as fast as they can are faster than it on some PCs.
 const PACE: f64 = 10.0;
 /// Messages that may come before a connection is ended: 10 s of them.
 const MESSAGES: usize = 200;
